@@ -1,0 +1,204 @@
+"""Layouts and pantographs as TOML files, and the JSON Schemas with which an editor completes them."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from catenary_fe.system import library
+from catenary_fe.system.catenary import Catenary, RayleighDamping, Span, Support
+from catenary_fe.system.errors import InputError
+from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.parameters import NonEmpty, Number, Parameters, Positive, Text, problem_lines
+from catenary_fe.system.wire import Dropper, Wire
+
+LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+class WireEntry(Wire):
+    """A wire of its own, or one of the library with some values changed."""
+
+    library: Text | None = None
+    """name of a wire in the library, which fills in the values that are not given"""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=["tension"]))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_in(cls, data: Any) -> Any:
+        if isinstance(data, dict) and isinstance(data.get("library"), str):
+            return library.wire_record(data["library"]) | data
+        return data
+
+    def wire(self) -> Wire:
+        return Wire(**self.model_dump(exclude={"library"}))
+
+
+class DropperEntry(Dropper):
+    """A dropper with values of its own; a bare number is its position."""
+
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: schema.update(
+            {"anyOf": [{"type": "object"}, {"type": "number"}], "type": ["object", "number"]}
+        )
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bare_position(cls, data: Any) -> Any:
+        if isinstance(data, int | float):
+            return {"position": data}
+        if not isinstance(data, dict):
+            raise ValueError(f"{data!r} is neither a position in metres nor a table")
+        return data
+
+
+class DropperDefaults(Dropper):
+    """What all droppers of the line have in common."""
+
+    position: Number = Field(default=0.0, exclude=True, json_schema_extra={"deprecated": True})
+    """not used here: each span lists the positions"""
+
+    @model_validator(mode="after")
+    def _no_position(self) -> DropperDefaults:
+        if "position" in self.model_fields_set:
+            raise ValueError("a position belongs to a span's list of droppers, not to the common values")
+        return self
+
+
+class SpanEntry(Span):
+    """One span, or several equal ones."""
+
+    droppers: tuple[DropperEntry, ...]
+    """positions in metres from the span's first support, or tables for droppers with values of their own"""
+    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
+    """how many spans like this follow one another"""
+
+
+class SupportEntry(Support):
+    """A support that differs from the others."""
+
+    at: Annotated[int, Field(strict=True, ge=1)]
+    """number of the support, from 1; support n stands before span n"""
+
+
+class LayoutFile(Parameters):
+    """A catenary layout, as it is written in a TOML file."""
+
+    model_config = ConfigDict(title="catenary_fe layout")
+
+    name: Text
+    """what is drawn and printed as title"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    contact_wire: WireEntry
+    """the wire that the pantograph touches"""
+    messenger_wire: WireEntry
+    """the wire that carries the droppers"""
+    dropper: DropperDefaults = DropperDefaults()
+    """values that all droppers have in common"""
+    support: Support = Support()
+    """values that all supports have in common"""
+    supports: tuple[SupportEntry, ...] = ()
+    """supports that differ"""
+    span: Annotated[tuple[SpanEntry, ...], NonEmpty]
+    """the spans in order"""
+    contact_wire_height: Positive = 5.3
+    """[m] nominal, above the rail"""
+    system_height: Positive = 1.2
+    """[m] between messenger wire and contact wire at the supports"""
+    damping: RayleighDamping = RayleighDamping()
+    """of the wires"""
+    evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
+    """numbers of the spans (from 1) for the statistics; unset: the middle third, at least two"""
+
+    def catenary(self) -> Catenary:
+        """The catenary that the file describes. Raises InputError."""
+        spans = tuple(self._span(entry) for entry in self.span for _ in range(entry.count))
+        supports = [self.support] * (len(spans) + 1)
+        for entry in self.supports:
+            if entry.at > len(supports):
+                raise InputError(f"supports: at = {entry.at}: the line has supports 1 to {len(supports)}")
+            changes = {name: getattr(entry, name) for name in entry.model_fields_set - {"at"}}
+            supports[entry.at - 1] = self.support.replace(**changes)
+        return Catenary(
+            name=self.name,
+            source=self.source,
+            contact_wire=self.contact_wire.wire(),
+            messenger_wire=self.messenger_wire.wire(),
+            spans=spans,
+            supports=tuple(supports),
+            contact_wire_height=self.contact_wire_height,
+            system_height=self.system_height,
+            damping=self.damping,
+            evaluated_spans=self.evaluated_spans,
+        )
+
+    def _span(self, entry: SpanEntry) -> Span:
+        common = {name: getattr(self.dropper, name) for name in self.dropper.model_fields_set}
+        droppers = tuple(
+            Dropper(**(common | {name: getattr(d, name) for name in d.model_fields_set}))
+            for d in entry.droppers
+        )
+        return Span(length=entry.length, droppers=droppers, pre_sag=entry.pre_sag)
+
+
+def load_catenary(path: str | Path) -> Catenary:
+    """Read a layout file (TOML).
+
+    Raises InputError, one line for each fault that the file has.
+    """
+    path = Path(path)
+    layout = _read(path, LayoutFile, "layout")
+    try:
+        return layout.catenary()
+    except InputError as error:
+        raise InputError(*(f"{path}: {line}" for line in error.problems)) from None
+
+
+def load_pantograph(name_or_path: str | Path) -> Pantograph:
+    """A pantograph from a TOML file, or from the library by its name.
+
+    Raises InputError, one line for each fault that the file has, or the near names of the library.
+    """
+    path = Path(name_or_path)
+    if path.suffix == ".toml" or path.is_file():
+        return _read(path, Pantograph, "pantograph")
+    return library.pantograph(str(name_or_path))
+
+
+def layout_schema() -> dict[str, Any]:
+    """JSON Schema of a layout file."""
+    return LayoutFile.model_json_schema()
+
+
+def pantograph_schema() -> dict[str, Any]:
+    """JSON Schema of a pantograph file."""
+    return Pantograph.model_json_schema()
+
+
+def _read(path: Path, model: type[_Model], kind: str) -> _Model:
+    try:
+        return model.model_validate(_read_toml(path, kind))
+    except ValidationError as error:
+        raise InputError(*problem_lines(error, model, where=str(path))) from None
+
+
+def _read_toml(path: Path, kind: str) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
+        return tomllib.loads(path.read_bytes().decode("utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text in UTF-8 (byte {error.start}); save it as UTF-8") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"{path}: not a TOML file: {error}") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None

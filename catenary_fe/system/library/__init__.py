@@ -1,0 +1,115 @@
+"""Published wires, lines and pantographs, each with its source and how sure it is."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from catenary_fe.system.catenary import Catenary, Span, SteadyArm, Support
+from catenary_fe.system.errors import InputError
+from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.parameters import Number, Parameters, Positive, Text
+from catenary_fe.system.wire import Dropper, Wire
+
+
+class Line(Parameters):
+    """A published line: wires, tensions and geometry, as far as they are known."""
+
+    name: Text
+    source: Text
+    contact_wire: Wire
+    messenger_wire: Wire
+    span_length: Positive
+    """[m]"""
+    system_height: Positive
+    """[m]"""
+    contact_wire_height: Positive | None = None
+    """[m] above the rail, where known"""
+    pre_sag: Number = 0.0
+    """[m] at mid-span"""
+    stagger: Number | None = None
+    """[m] to either side, where known"""
+    stitch_wire: Wire | None = None
+    stitch_wire_length: Positive | None = None
+    """[m]"""
+    dropper: Dropper | None = None
+    """what the droppers have in common, where known (position 0)"""
+
+    def catenary(self, *, spans: int = 10, dropper_spacing: float = 6.0, steady_arm: SteadyArm) -> Catenary:
+        """A layout of equal spans on this line's wires.
+
+        spans : number of spans
+        dropper_spacing : [m] wanted distance of the droppers; they are spread evenly, the first half a
+            distance from the support. An assumption: the published data do not place them.
+        steady_arm : registration, which the published data do not give
+
+        Raises InputError for a line with stitch wires, which this version does not model.
+        """
+        if self.stitch_wire:
+            raise InputError(
+                f"line {self.name}: hangs on stitch wires, which are not modelled yet; choose another line or"
+                " write a layout without them"
+            )
+        count = max(2, round(self.span_length / dropper_spacing))
+        gap = self.span_length / count
+        common = self.dropper or Dropper(position=0.0)
+        droppers = tuple(common.replace(position=(i + 0.5) * gap) for i in range(count))
+        return Catenary(
+            name=self.name,
+            source=self.source,
+            contact_wire=self.contact_wire,
+            messenger_wire=self.messenger_wire,
+            spans=(Span(length=self.span_length, droppers=droppers, pre_sag=self.pre_sag),) * spans,
+            supports=(Support(steady_arm=steady_arm),) * (spans + 1),
+            system_height=self.system_height,
+            contact_wire_height=self.contact_wire_height or 5.3,
+        )
+
+
+def wire(name: str, *, tension: float) -> Wire:
+    """A wire of the library under a tension [N]. Raises InputError with the near names."""
+    return Wire(**(wire_record(name) | {"tension": tension}))
+
+
+def wire_record(name: str) -> dict[str, Any]:
+    """What the library knows of a wire: all fields but the tension. Raises InputError with the near names."""
+    return dict(_find("wire", name, _records("wires"))) | {"name": name}
+
+
+def pantograph(name: str) -> Pantograph:
+    """A pantograph of the library. Raises InputError with the near names."""
+    return Pantograph(**(dict(_find("pantograph", name, _records("pantographs"))) | {"name": name}))
+
+
+def line(name: str) -> Line:
+    """A line of the library. Raises InputError with the near names."""
+    record = dict(_find("line", name, _records("lines")))
+    for key in ("contact_wire", "messenger_wire", "stitch_wire"):
+        if key in record:
+            record[key] = wire(record[key]["library"], tension=record[key]["tension"])
+    return Line(**(record | {"name": name}))
+
+
+def names(kind: str) -> list[str]:
+    """Names in the library; kind is 'wires', 'pantographs' or 'lines'."""
+    return list(_records(kind))
+
+
+@cache
+def _records(kind: str) -> Mapping[str, Mapping[str, Any]]:
+    text = resources.files(__name__).joinpath(f"{kind}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def _find(kind: str, name: str, records: Mapping[str, Mapping[str, Any]]) -> Mapping[str, Any]:
+    folded = {known.casefold(): known for known in records}
+    known = folded.get(name.casefold())
+    if known:
+        return records[known]
+    near = [folded[n] for n in difflib.get_close_matches(name.casefold(), folded, n=3, cutoff=0.4)]
+    listed = ", ".join(f"'{n}'" for n in near or records)
+    raise InputError(f"no {kind} '{name}' in the library; {'near' if near else 'known'} names: {listed}")

@@ -1,0 +1,133 @@
+"""Ground for all parameter objects: frozen, keyword-only, checked when made, with errors an engineer can read."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from catenary_fe.system.errors import InputError
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+Text = Annotated[str, Field(strict=True)]
+
+
+def _not_empty(items: tuple[Any, ...]) -> tuple[Any, ...]:
+    if not items:
+        raise ValueError("is empty; at least one is needed")
+    return items
+
+
+# pydantic's own min_length would report "too short" beside each fault of an item
+NonEmpty = AfterValidator(_not_empty)
+
+
+class _ReadableErrors(type(BaseModel)):  # type: ignore[misc]
+    """Catches pydantic's report where an object is made by hand; nested ones keep their place in it."""
+
+    def __call__(cls, *args: Any, **data: Any) -> Any:
+        try:
+            return super().__call__(*args, **data)
+        except ValidationError as error:
+            raise InputError(*problem_lines(error, cls)) from None
+
+
+class Parameters(BaseModel, metaclass=_ReadableErrors):
+    """Base of what an engineer writes down. Raises :class:`InputError` with one line for each fault."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, checked like a new object."""
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        return type(self)(**(fields | changes))
+
+
+def problem_lines(error: ValidationError, model: type[BaseModel], where: str = "") -> list[str]:
+    """Turn pydantic's report into lines of: place, value, rule, remedy."""
+    lines = [_problem_line(detail, model) for detail in error.errors(include_url=False)]
+    return [f"{where}: {line}" if where else line for line in dict.fromkeys(lines)]
+
+
+def _problem_line(detail: ErrorDetails, model: type[BaseModel]) -> str:
+    path = _user_path(detail["loc"], model)
+    place, kind, value = _place(path), detail["type"], detail["input"]
+    hint = _description(path, model)
+    if kind == "missing":
+        return f"{place} is missing; add it: {hint}" if hint else f"{place} is missing; add it"
+    if kind == "extra_forbidden":
+        return f"unknown key {place}; {_suggest(path, model)}"
+    if kind == "value_error":
+        text = str(detail["ctx"]["error"])
+        return f"{place}: {text}" if place else text
+    if kind in ("model_type", "dict_type", "model_attributes_type"):
+        return f"{place} = {_shorten(value)}: must be a table of its own keys; {_suggest([*path, ''], model)}"
+    rule = detail["msg"].removeprefix("Input should be ").removeprefix("a ").removeprefix("valid ")
+    rule = rule.replace("greater than or equal to", "at least").replace("less than or equal to", "at most")
+    return f"{place} = {_shorten(value)}: must be {rule}" + (f"; it is {hint}" if hint else "")
+
+
+def _user_path(location: tuple[int | str, ...], model: type[BaseModel]) -> list[int | str]:
+    """What the user wrote: pydantic puts names of its own (of a union's branches) into a place too."""
+    path: list[int | str] = []
+    for part in location:
+        known = isinstance(part, int) or any(part in m.model_fields for m in _owners([*path, part], model))
+        if known or part is location[-1]:
+            path.append(part)
+    return path
+
+
+def _place(path: list[int | str]) -> str:
+    """``("span", 2, "length")`` reads ``span 3: length``: list positions count from 1, as on site."""
+    words = ""
+    for part in path:
+        if isinstance(part, int):
+            words += f" {part + 1}:"
+        else:
+            words += (" " if words.endswith(":") else "." if words else "") + part
+    return words.strip().removesuffix(":")
+
+
+def _shorten(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _field_models(annotation: Any) -> list[type[BaseModel]]:
+    """Parameter classes named anywhere inside an annotation."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [m for argument in getattr(annotation, "__args__", ()) for m in _field_models(argument)]
+
+
+def _owners(path: list[int | str], model: type[BaseModel]) -> list[type[BaseModel]]:
+    owners = [model]
+    for part in path[:-1]:
+        if isinstance(part, int):
+            continue
+        owners = [
+            inner
+            for owner in owners
+            if part in owner.model_fields
+            for inner in _field_models(owner.model_fields[part].annotation)
+        ]
+    return owners
+
+
+def _description(path: list[int | str], model: type[BaseModel]) -> str:
+    names = [part for part in path if isinstance(part, str)]
+    for owner in _owners(path, model):
+        field = owner.model_fields.get(names[-1]) if names else None
+        if field and field.description:
+            return " ".join(field.description.split())
+    return ""
+
+
+def _suggest(path: list[int | str], model: type[BaseModel]) -> str:
+    known = sorted({name for owner in _owners(path, model) for name in owner.model_fields})
+    near = difflib.get_close_matches(str(path[-1]), known, n=1)
+    return f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
