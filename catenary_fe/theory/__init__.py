@@ -29,13 +29,14 @@ from catenary_fe.theory.method_of_lines import (
     linear_law,
     solve_by_lines,
 )
-from catenary_fe.theory.moving_force import (
+from catenary_fe.theory.point_force import (
     deflection_under_moving_force,
     force_at_rest,
     influence_interval,
     moving_force,
     moving_force_derivatives,
 )
+from catenary_fe.theory.pulse import pulse_at_obstacle
 from catenary_fe.theory.scattering import (
     DropperScattering,
     Scattering,
@@ -48,7 +49,7 @@ from catenary_fe.theory.scattering import (
     scatter_at_joint,
     scatter_at_obstacle,
 )
-from catenary_fe.theory.sliding_oscillator import (
+from catenary_fe.theory.sliding_pantograph import (
     SlidingOscillator,
     elastic_pantograph_force,
     sliding_oscillator,
@@ -99,6 +100,7 @@ __all__ = [
     "moving_force_series",
     "natural_frequencies",
     "phase_velocity",
+    "pulse_at_obstacle",
     "reflected_waves",
     "reflection_coefficient",
     "running_waves",

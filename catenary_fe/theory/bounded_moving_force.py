@@ -22,7 +22,7 @@ from catenary_fe.theory._quadrature import Function
 from catenary_fe.theory.bounded_string import influence_line
 from catenary_fe.theory.forces import Force, HarmonicForce, Impulse, as_harmonic, impulse_function
 from catenary_fe.theory.infinite_string import wave_speed
-from catenary_fe.theory.moving_force import influence_interval
+from catenary_fe.theory.point_force import influence_interval
 
 # Nearer to the wave speed than this (1 − V²/c²), the series is summed as it stands: its tail has no closed
 # form at V = c.

@@ -1,4 +1,4 @@
-"""The string between two rigid ends: standing waves, sine series, and the method of images (eq. 7), statics."""
+"""The string between two rigid ends: standing waves, sine series, images (eq. 7), and its statics."""
 
 from __future__ import annotations
 

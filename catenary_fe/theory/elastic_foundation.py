@@ -137,4 +137,4 @@ def _radiating(xi: FloatArray, effective: float, bedding: float, bending: float)
     if bending == 0.0:
         return np.where(xi < 0.0, behind, 0.0)
     short = np.sqrt((split - effective) / (2.0 * bending))
-    return np.where(xi < 0.0, behind, -np.sin(short * xi) / (short * split))
+    return np.asarray(np.where(xi < 0.0, behind, -np.sin(short * xi) / (short * split)))

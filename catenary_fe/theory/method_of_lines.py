@@ -155,7 +155,7 @@ def solve_by_lines(
     initial_deflection: Function | None = None,
     initial_velocity: Function | None = None,
     integrator: Integrator = "auto",
-    tolerance: float = 1e-6,
+    tolerance: float = 1e-5,
     progress: Callable[[float], None] | None = None,
 ) -> LinesResult:
     """Motion of a string or tensioned beam, second differences in space and a high-order scheme in time.

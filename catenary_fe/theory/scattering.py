@@ -30,15 +30,17 @@ class Scattering:
     ----------
     reflection : [-] complex amplitude of the wave sent back
     transmission : [-] complex amplitude of the wave that goes on
+    onward_ratio : [-] Z₀ of the wire on which it goes on over Z₀ of the one on which it came
     """
 
     reflection: ComplexArray
     transmission: ComplexArray
+    onward_ratio: float = 1.0
 
     @property
     def energy(self) -> FloatArray:
-        """Outgoing over incoming energy, |r|² + |t|²; 1 for an obstacle that loses none."""
-        return np.asarray(np.abs(self.reflection) ** 2 + np.abs(self.transmission) ** 2)
+        """Outgoing over incoming energy, |r|² + (Z₂/Z₁) |t|²; 1 for an obstacle that loses none."""
+        return np.asarray(np.abs(self.reflection) ** 2 + self.onward_ratio * np.abs(self.transmission) ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,13 +56,12 @@ class DropperScattering(Scattering):
     """
 
     crossing: ComplexArray
-    impedance_ratio: float
+    impedance_ratio: float = 1.0
 
     @property
     def energy(self) -> FloatArray:
         """Outgoing over incoming energy on both wires, |r|² + |t|² + 2 (Z₂/Z₁) |s|²; 1 without loss."""
-        stays = np.abs(self.reflection) ** 2 + np.abs(self.transmission) ** 2
-        return np.asarray(stays + 2.0 * self.impedance_ratio * np.abs(self.crossing) ** 2)
+        return np.asarray(super().energy + 2.0 * self.impedance_ratio * np.abs(self.crossing) ** 2)
 
 
 def characteristic_impedance(*, tension: float, mass_per_length: float) -> float:
@@ -160,9 +161,8 @@ def scatter_at_joint(
 ) -> Scattering:
     """Reflection and transmission where one string continues as another.
 
-    Deflection and transverse force are continuous: r = (Z₁ − Z₂)/(Z₁ + Z₂), t = 2Z₁/(Z₁ + Z₂). The energy
-    that goes on is (Z₂/Z₁) |t|², so `energy` is 1 for equal impedances only. A fixed end is Z₂ → ∞ (r =
-    −1), a free one Z₂ → 0.
+    Deflection and transverse force are continuous: r = (Z₁ − Z₂)/(Z₁ + Z₂), t = 2Z₁/(Z₁ + Z₂). A fixed end is
+    Z₂ → ∞ (r = −1), a free one Z₂ → 0 (r = 1).
     Source: derived from eq. 2 and 3.
 
     Parameters
@@ -187,6 +187,7 @@ def scatter_at_joint(
     return Scattering(
         reflection=np.asarray((here - there) / (here + there), dtype=np.complex128),
         transmission=np.asarray(2.0 * here / (here + there), dtype=np.complex128),
+        onward_ratio=there / here,
     )
 
 

@@ -19,7 +19,7 @@ _SAME = 1e-12
 
 
 class Influence(NamedTuple):
-    """Times between which a moving force has acted on what is seen at (x, t); equal where it has not."""
+    """Times between which a moving force has acted on what is seen at (x, t); both 0 if never."""
 
     first: FloatArray
     last: FloatArray
@@ -47,7 +47,7 @@ def influence_interval(x: ArrayLike, t: ArrayLike, *, wave_speed: float, speed: 
     Returns
     -------
     Influence
-        [s] first and last such time, each in the shape of x and t broadcast; equal where nothing is felt
+        [s] first and last such time, each in the shape of x and t broadcast; both 0 where nothing is felt
 
     Raises
     ------
@@ -65,8 +65,8 @@ def influence_interval(x: ArrayLike, t: ArrayLike, *, wave_speed: float, speed: 
         last = np.minimum(last, (reach - x) / (c - v))
     else:
         first = np.maximum(0.0, (x - reach) / (v - c))
-    last = np.maximum(last, 0.0)
-    return Influence(np.minimum(first, last), last)
+    felt = last > first
+    return Influence(np.where(felt, first, 0.0), np.where(felt, last, 0.0))
 
 
 def moving_force(
