@@ -1,0 +1,104 @@
+"""Finite-element multibody simulation of railway catenaries and the pantographs that slide along them."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from catenary_fe.analysis import StaticState, elasticity, layout_warnings, simulate, solve_statics
+    from catenary_fe.equilibrium import Shape, find_form, find_heights
+    from catenary_fe.fe import MeshSettings, TimeSettings
+    from catenary_fe.results import Elasticity, ForceStatistics, Run, load_run
+    from catenary_fe.system import (
+        AerodynamicForce,
+        Catenary,
+        CatenaryError,
+        Dropper,
+        InputError,
+        Pantograph,
+        RayleighDamping,
+        SolverError,
+        Span,
+        Stage,
+        SteadyArm,
+        Support,
+        Wire,
+        library,
+        load_catenary,
+        load_pantograph,
+        target_mean_force,
+    )
+
+# loaded on first use: importing the package stays quick
+_ROOMS = {
+    "analysis": ("StaticState", "elasticity", "layout_warnings", "simulate", "solve_statics"),
+    "equilibrium": ("Shape", "find_form", "find_heights"),
+    "fe": ("MeshSettings", "TimeSettings"),
+    "results": ("Elasticity", "ForceStatistics", "Run", "load_run"),
+    "system": (
+        "AerodynamicForce",
+        "Catenary",
+        "CatenaryError",
+        "Dropper",
+        "InputError",
+        "Pantograph",
+        "RayleighDamping",
+        "SolverError",
+        "Span",
+        "Stage",
+        "SteadyArm",
+        "Support",
+        "Wire",
+        "library",
+        "load_catenary",
+        "load_pantograph",
+        "target_mean_force",
+    ),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+__all__ = [
+    "AerodynamicForce",
+    "Catenary",
+    "CatenaryError",
+    "Dropper",
+    "Elasticity",
+    "ForceStatistics",
+    "InputError",
+    "MeshSettings",
+    "Pantograph",
+    "RayleighDamping",
+    "Run",
+    "Shape",
+    "SolverError",
+    "Span",
+    "Stage",
+    "StaticState",
+    "SteadyArm",
+    "Support",
+    "TimeSettings",
+    "Wire",
+    "elasticity",
+    "find_form",
+    "find_heights",
+    "layout_warnings",
+    "library",
+    "load_catenary",
+    "load_pantograph",
+    "load_run",
+    "simulate",
+    "solve_statics",
+    "target_mean_force",
+]
+
+
+def __getattr__(name: str) -> Any:
+    room = _ROOM_OF.get(name)
+    if room is None:
+        raise AttributeError(f"module 'catenary_fe' has no attribute {name!r}")
+    return getattr(import_module(f"catenary_fe.{room}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

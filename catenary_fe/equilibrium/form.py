@@ -44,7 +44,9 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
         half_weights = _half_weights(catenary, lengths)
         tensions = forces + contact_weight + half_weights
         _check_tensions(catenary, tensions)
-        messenger, support_forces = _hang_messenger_wire(catenary, nodes.messenger, messenger, tensions + half_weights)
+        messenger, support_forces = _hang_messenger_wire(
+            catenary, nodes.messenger, messenger, tensions + half_weights
+        )
         lengths = _installed_lengths(nodes, contact, messenger) - tensions / _stiffnesses(catenary)
     _check_room(catenary, lengths)
     installation = Installation(contact, messenger, lengths, arm_forces, support_forces)
@@ -114,7 +116,9 @@ def _hang_messenger_wire(
     statics = solve_wire(
         catenary.messenger_wire, line, held, loads, {}, what="form finding of the messenger wire"
     )
-    return _straightened(catenary.messenger_wire, mesh, statics), np.array([statics.reactions[int(n)] for n in mesh.supports])
+    return _straightened(catenary.messenger_wire, mesh, statics), np.array(
+        [statics.reactions[int(n)] for n in mesh.supports]
+    )
 
 
 def _straightened(wire: Wire, mesh: WireMesh, statics: WireStatics) -> WireLine:
@@ -198,7 +202,9 @@ def _given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None)
         lengths = np.array(given, dtype=float)
     values = np.asarray(lengths, dtype=float)
     if values.shape != (len(catenary.droppers),):
-        raise InputError(f"{values.size} dropper lengths for {len(catenary.droppers)} droppers: give one each")
+        raise InputError(
+            f"{values.size} dropper lengths for {len(catenary.droppers)} droppers: give one each"
+        )
     room = np.interp(
         catenary.dropper_positions, catenary.support_positions, catenary.messenger_support_heights
     ) - (catenary.design_heights)
@@ -219,7 +225,9 @@ def _installation_guess(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Inst
     heights = np.concatenate([catenary.messenger_support_heights, catenary.design_heights + lengths])
     order = np.argsort(at)
     z = np.interp(mesh.messenger.x, mesh.messenger.x[at[order]], heights[order])
-    messenger = WireLine.through(catenary.messenger_wire, mesh.messenger.x, z, np.gradient(z, mesh.messenger.x))
+    messenger = WireLine.through(
+        catenary.messenger_wire, mesh.messenger.x, z, np.gradient(z, mesh.messenger.x)
+    )
     return Installation(contact, messenger, lengths, arm_forces, np.zeros(len(catenary.supports)))
 
 
@@ -251,9 +259,7 @@ def _settle(model: Model, installation: Installation) -> Installation:
     )
 
 
-def _verified(
-    catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation: Installation
-) -> Shape:
+def _verified(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation: Installation) -> Shape:
     shape = _shape(catenary, settings, nodes, installation)
     errors = np.abs(shape.height_errors)
     if errors.size and errors.max() > HEIGHT_TOLERANCE:

@@ -15,28 +15,39 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class MeshSettings:
-    """Largest element lengths. The defaults come from the study in ``models/studies/convergence.py``.
+    """Element lengths [m]. The defaults come from the study in ``models/studies/convergence.py``.
 
-    contact_wire_element : [m] of the wire that the pantograph touches
-    messenger_wire_element : [m]
+    A wire kinks at clamps and supports, within a length of √(EI/T), about 0.1 m: elements start there with
+    the length ``at_clamps`` and grow away from them up to the largest one.
 
-    Raises InputError for lengths that are not positive.
+    contact_wire_element : largest, of the wire that the pantograph touches
+    messenger_wire_element : largest
+    at_clamps : next to droppers and supports
+    growth : ratio of neighbouring lengths
+
+    Raises InputError for lengths that are not positive and ratios below 1.
     """
 
-    contact_wire_element: float = 1.0
+    contact_wire_element: float = 1.3
     messenger_wire_element: float = 2.0
+    at_clamps: float = 0.5
+    growth: float = 2.0
 
     def __post_init__(self) -> None:
-        for name in ("contact_wire_element", "messenger_wire_element"):
+        for name in ("contact_wire_element", "messenger_wire_element", "at_clamps"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
                 raise InputError(f"mesh: {name} = {value!r} m: must be a positive length")
+        if not (np.isfinite(self.growth) and self.growth >= 1):
+            raise InputError(f"mesh: growth = {self.growth!r}: must be a ratio of at least 1")
 
     def halved(self) -> MeshSettings:
         """The same mesh with elements half as long."""
         return MeshSettings(
             contact_wire_element=self.contact_wire_element / 2,
             messenger_wire_element=self.messenger_wire_element / 2,
+            at_clamps=self.at_clamps / 2,
+            growth=self.growth,
         )
 
 
@@ -65,19 +76,28 @@ class Mesh:
 def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     """Mesh both wires with nodes at all droppers and supports."""
     return Mesh(
-        contact=_wire_mesh(catenary, settings.contact_wire_element),
-        messenger=_wire_mesh(catenary, settings.messenger_wire_element),
+        contact=_wire_mesh(catenary, settings, settings.contact_wire_element),
+        messenger=_wire_mesh(catenary, settings, settings.messenger_wire_element),
     )
 
 
-def _wire_mesh(catenary: Catenary, largest: float) -> WireMesh:
+def _wire_mesh(catenary: Catenary, settings: MeshSettings, largest: float) -> WireMesh:
     supports, droppers = catenary.support_positions, catenary.dropper_positions
     fixed = np.unique(np.concatenate([supports, droppers]))
-    x = np.concatenate([_subdivide(a, b, largest) for a, b in zip(fixed[:-1], fixed[1:], strict=True)])
-    x = np.append(x, fixed[-1])
+    parts = [
+        a + _graded(b - a, min(settings.at_clamps, largest), settings.growth, largest)
+        for a, b in zip(fixed[:-1], fixed[1:], strict=True)
+    ]
+    x = np.append(np.concatenate(parts), fixed[-1])
     return WireMesh(x=x, droppers=np.searchsorted(x, droppers), supports=np.searchsorted(x, supports))
 
 
-def _subdivide(start: float, end: float, largest: float) -> Floats:
-    count = max(1, int(np.ceil((end - start) / largest - 1e-9)))
-    return np.linspace(start, end, count + 1)[:-1]
+def _graded(length: float, first: float, growth: float, largest: float) -> Floats:
+    """Stations from 0 to short of ``length``, symmetric, elements growing from both ends."""
+    half: list[float] = []
+    while sum(half) + (size := min(first * growth ** len(half), largest)) < length / 2:
+        half.append(size)
+    rest = length - 2 * sum(half)
+    middle = max(1, int(np.ceil(rest / largest - 1e-9)))
+    sizes = np.array([*half, *[rest / middle] * middle, *half[::-1]])
+    return np.concatenate([[0.0], np.cumsum(sizes)[:-1]])

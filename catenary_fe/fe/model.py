@@ -10,16 +10,15 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
     COORDINATES,
-    GRAVITY,
     UP,
     WireItems,
     WireLine,
     add_ground_coordinate,
+    add_overlay,
     add_wire,
     anchor_and_tension,
     hold,
@@ -52,6 +51,7 @@ class Model:
 
     mbs : the system, not yet assembled
     droppers : numbers of the dropper connectors
+    dropper_lengths : [m], stress-free
     ground : number of a coordinate marker that never moves
     held_arms, held_supports : constraints by support number, in a model of the installation
     """
@@ -62,6 +62,7 @@ class Model:
     contact: WireItems
     messenger: WireItems
     droppers: list[int]
+    dropper_lengths: Floats
     ground: int
     held_arms: dict[int, int]
     held_supports: dict[int, int]
@@ -97,81 +98,46 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
         the arms that shall give it its design height: their forces are what an installation sets.
     """
     mbs = new_system()
-    ground = add_ground_coordinate(mbs)
     contact = add_wire(mbs, catenary.contact_wire, installation.contact)
     messenger = add_wire(mbs, catenary.messenger_wire, installation.messenger)
+    ground = add_ground_coordinate(mbs)
     for wire, items in ((catenary.contact_wire, contact), (catenary.messenger_wire, messenger)):
         anchor_and_tension(mbs, items, ground, wire)
-    masses = _add_point_masses(mbs, catenary, mesh, contact, messenger, installation)
-    _add_overlay(mbs, catenary, contact, messenger, masses)
+    masses = _point_masses(catenary, mesh, installation.dropper_lengths)
+    add_overlay(mbs, (contact, messenger), masses, catenary.damping)
     droppers = _add_droppers(mbs, catenary, mesh, contact, messenger, installation.dropper_lengths)
     held_arms = _add_arms(mbs, catenary, mesh, contact, ground, installation, held)
     held_supports = _add_supports(mbs, catenary, mesh, messenger, ground, installation, held)
-    return Model(
-        mbs, catenary, mesh, contact, messenger, droppers, ground, held_arms, held_supports
-    )
+    lengths = installation.dropper_lengths
+    return Model(mbs, catenary, mesh, contact, messenger, droppers, lengths, ground, held_arms, held_supports)
 
 
-def _add_point_masses(
-    mbs: exu.MainSystem,
-    catenary: Catenary,
-    mesh: Mesh,
-    contact: WireItems,
-    messenger: WireItems,
-    installation: Installation,
-) -> Floats:
-    """Weights of clamps, droppers and arms; returns their masses by node, contact wire first."""
-    on_contact, on_messenger = np.zeros(len(contact.nodes)), np.zeros(len(messenger.nodes))
+def _point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Floats:
+    """[kg], shape (nodes,), of clamps, droppers and arms by node, contact wire first."""
+    on_contact, on_messenger = np.zeros(mesh.contact.x.size), np.zeros(mesh.messenger.x.size)
     for i, dropper in enumerate(catenary.droppers):
-        half = dropper.mass_per_length * installation.dropper_lengths[i] / 2
+        half = dropper.mass_per_length * lengths[i] / 2
         on_contact[mesh.contact.droppers[i]] += dropper.contact_wire_clamp_mass + half
         on_messenger[mesh.messenger.droppers[i]] += dropper.messenger_clamp_mass + half
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         if support.steady_arm:
             on_contact[mesh.contact.supports[i]] += support.steady_arm.mass
-    for items, masses in ((contact, on_contact), (messenger, on_messenger)):
-        for node in np.flatnonzero(masses):
-            marker = items.coordinate_marker(mbs, int(node), UP)
-            mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=-GRAVITY * masses[node]))
     return np.concatenate([on_contact, on_messenger])
 
 
-def _add_overlay(
-    mbs: exu.MainSystem, catenary: Catenary, contact: WireItems, messenger: WireItems, masses: Floats
-) -> None:
-    """Rayleigh damping of the wires with the tension's stiffness, and the point masses, as one object.
-
-    The cable's own damping knows only of EA and EI: waves in a wire live on the tension.
-    """
-    from scipy.sparse import csr_matrix, diags
-
-    damping = catenary.damping
-    mbs.Assemble()
-    bodies = contact.elements + messenger.elements
-    D = damping.alpha * mass_matrix(mbs, bodies) + damping.beta * stiffness_matrix(mbs, bodies)
-    per_coordinate = np.repeat(masses, COORDINATES) * np.tile([1.0, 1.0, 0.0, 0.0], masses.size)
-    matrices: dict[str, Any] = {}
-    if masses.any():
-        matrices["massMatrix"] = exu.MatrixContainer(csr_matrix(diags(per_coordinate)))
-    if D.nnz and (damping.alpha or damping.beta):
-        matrices["dampingMatrix"] = exu.MatrixContainer(csr_matrix(D))
-    if matrices:
-        nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=D.shape))
-        mbs.AddObject(
-            eii.ObjectGenericODE2(
-                nodeNumbers=contact.nodes + messenger.nodes,
-                # with a function of its own the object adds its matrices to the Jacobian as they are; without
-                # one Exudyn differentiates it numerically, coordinate by coordinate
-                jacobianUserFunction=lambda *_: nothing,
-                **matrices,
-            )
-        )
-
-
 def _tension_only(mbs, t, itemNumber, deltaL, deltaL_t, stiffness, damping, force):  # type: ignore[no-untyped-def]
-    zero = exu.symbolic.Real(0.0)
-    pull = exu.symbolic.max(zero, stiffness * deltaL + damping * deltaL_t)
-    return exu.symbolic.IfThenElse(deltaL > 0, pull, zero)
+    return one_sided(deltaL, deltaL_t, stiffness, damping)
+
+
+def one_sided(stretch: Any, rate: Any, stiffness: Any, damping: Any) -> Any:
+    """Symbolic force of a spring and damper that act one way only.
+
+    The damper's part is at most the spring's: the force is continuous where the spring goes slack, which
+    Newton's method needs, and never turns round.
+    """
+    symbolic = exu.symbolic
+    spring = symbolic.max(symbolic.Real(0.0), stiffness * stretch)
+    return spring + symbolic.max(-spring, symbolic.min(spring, damping * rate))
 
 
 def _add_droppers(

@@ -16,6 +16,7 @@ from catenary_fe.fe.wire import (
     UP,
     WireLine,
     add_ground_coordinate,
+    add_overlay,
     add_wire,
     anchor_and_tension,
     hold,
@@ -60,8 +61,9 @@ def solve_wire(
     Raises SolverError if there is no convergence.
     """
     mbs = new_system()
-    ground = add_ground_coordinate(mbs)
     items = add_wire(mbs, wire, line)
+    add_overlay(mbs, [items])
+    ground = add_ground_coordinate(mbs)
     anchor_and_tension(mbs, items, ground, wire)
     constraints = {node: hold(mbs, items, node, UP, ground) for node in held}
     for node, height in held.items():

@@ -4,36 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 import exudyn as exu
 import numpy as np
 
-from catenary_fe.system import InputError, SolverError
-
-
-@dataclass(frozen=True, kw_only=True)
-class TimeSettings:
-    """Time integration. The defaults come from the study in ``models/studies/convergence.py``.
-
-    step : [s] fixed time step
-    tolerance : relative, of the Newton iteration
-    spectral_radius : of the generalised-α method at high frequencies, 1: trapezoidal rule, no damping
-
-    Raises InputError for values outside their bounds.
-    """
-
-    step: float = 1e-3
-    tolerance: float = 1e-4
-    spectral_radius: float = 0.9
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and 0 < self.step <= 0.02):
-            raise InputError(f"time step = {self.step!r} s: must lie between 0 and 0.02 s; 0.001 is usual")
-        if not 0 < self.tolerance <= 1e-2:
-            raise InputError(f"tolerance = {self.tolerance!r}: must lie between 0 and 0.01")
-        if not 0 <= self.spectral_radius <= 1:
-            raise InputError(f"spectral_radius = {self.spectral_radius!r}: must lie between 0 and 1")
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.system import SolverError
 
 
 def new_system() -> exu.MainSystem:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.system import Wire
+from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.system import RayleighDamping, Wire
 
 Floats = NDArray[np.float64]
 
@@ -78,7 +81,7 @@ class WireItems:
 
 
 def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
-    """Add nodes, elements and weight of a wire that carries its tension along the given line."""
+    """Add nodes and elements of a wire that carries its tension along the given line."""
     nodes = [
         int(mbs.AddNode(eii.NodePoint2DSlope1(referenceCoordinates=list(row)))) for row in line.coordinates()
     ]
@@ -98,10 +101,52 @@ def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
         )
         for i, length in enumerate(line.lengths.tolist())
     ]
-    for element in elements:
-        marker = mbs.AddMarker(eii.MarkerBodyMass(bodyNumber=element))
-        mbs.AddLoad(eii.LoadMassProportional(markerNumber=marker, loadVector=[0, -GRAVITY, 0]))
     return WireItems(nodes, elements, line)
+
+
+def add_overlay(
+    mbs: exu.MainSystem,
+    wires: Sequence[WireItems],
+    point_masses: Floats | None = None,
+    damping: RayleighDamping | None = None,
+) -> None:
+    """Add weight, point masses and Rayleigh damping of the system's wires, as one object.
+
+    wires : all wires of the system so far, in the order they were added, before anything else with nodes
+    point_masses : [kg], shape (nodes of all wires,)
+
+    The damping matrix includes the tension's stiffness, on which a wire's waves live; the cable's own damping
+    knows only of EA and EI. The weight as one constant vector costs a third of a load on each element.
+    """
+    from scipy.sparse import csr_matrix, diags
+
+    mbs.Assemble()
+    elements = [element for wire in wires for element in wire.elements]
+    nodes = [node for wire in wires for node in wire.nodes]
+    M = mass_matrix(mbs, elements)
+    up = np.tile(np.eye(COORDINATES)[UP], len(nodes))
+    matrices: dict[str, Any] = {}
+    if point_masses is not None and point_masses.any():
+        moves = np.tile([1.0, 1.0, 0.0, 0.0], len(nodes))
+        added = diags(np.repeat(point_masses, COORDINATES) * moves)
+        matrices["massMatrix"] = exu.MatrixContainer(csr_matrix(added))
+        weight = -GRAVITY * (M + added) @ up
+    else:
+        weight = -GRAVITY * M @ up
+    if damping and (damping.alpha or damping.beta):
+        D = csr_matrix(damping.alpha * M + damping.beta * stiffness_matrix(mbs, elements))
+        matrices["dampingMatrix"] = exu.MatrixContainer(D)
+    nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
+    mbs.AddObject(
+        eii.ObjectGenericODE2(
+            nodeNumbers=nodes,
+            forceVector=weight,
+            # with a function of its own the object adds its matrices to the Jacobian as they are; without
+            # one Exudyn differentiates it numerically, coordinate by coordinate
+            jacobianUserFunction=lambda *_: nothing,
+            **matrices,
+        )
+    )
 
 
 def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire: Wire) -> None:

@@ -1,0 +1,98 @@
+"""Warnings before a solve, where physics and discretisation disagree: the rule, and both numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.results.signal import CUT_OFF
+from catenary_fe.system import Catenary, InputError, Pantograph
+
+FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
+SLOWEST = 5 / 3.6  # [m/s]
+WAVE_SPEED_SHARE = 0.7  # of the contact wire's wave speed, EN 50119 practice (secondary source)
+RUN_IN = 2  # spans before the evaluated ones, for the start's transient to be left behind
+
+
+def check_speed(speed: float) -> None:
+    """Raises InputError for a speed [m/s] that is not one, or looks like another unit."""
+    if not np.isfinite(speed) or speed <= 0:
+        raise InputError(f"speed = {speed!r} m/s: must be above 0")
+    if speed > FASTEST:
+        raise InputError(
+            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: above 600 km/h, it looks like the wrong unit;"
+            " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
+        )
+    if speed < SLOWEST:
+        raise InputError(
+            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
+            " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
+        )
+
+
+def layout_warnings(catenary: Catenary) -> list[str]:
+    """What looks wrong in a layout, though no rule forbids it."""
+    found = []
+    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
+        if wire.tension < 1000:
+            found.append(
+                f"{name}.tension = {wire.tension:g} N is below 1000 N: looks like kN, the field takes N"
+            )
+        strain = wire.tension / wire.axial_stiffness
+        if strain > 0.01:
+            found.append(
+                f"{name}: the tension stretches the wire by {100 * strain:.2g} %, more than 1 %: EA ="
+                f" {wire.axial_stiffness:g} N looks too small"
+            )
+    for i, support in enumerate(catenary.supports[1:-1], start=2):
+        if support.steady_arm is None:
+            found.append(f"support {i} has no steady arm: the contact wire is free to sag there")
+            break
+    return found
+
+
+def run_warnings(
+    shape: Shape,
+    pantographs: Sequence[Pantograph],
+    speed: float,
+    start: NDArray[np.float64],
+    time: TimeSettings,
+) -> list[str]:
+    """What to know before trusting a run: each line has the rule and both numbers."""
+    catenary = shape.catenary
+    wave_speed = catenary.contact_wire.wave_speed
+    found = layout_warnings(catenary)
+    if speed > WAVE_SPEED_SHARE * wave_speed:
+        found.append(
+            f"speed {3.6 * speed:.0f} km/h is {speed / wave_speed:.2f} of the contact wire's wave speed,"
+            f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}"
+        )
+    longest = float(np.diff(shape.mesh.contact.x).max())
+    wavelength = max(wave_speed - speed, 0.0) / CUT_OFF
+    if longest > wavelength:
+        found.append(
+            f"elements of up to {longest:.2f} m are longer than the waves of {CUT_OFF:g} Hz ahead of the"
+            f" pantograph, {wavelength:.2f} m; refine the mesh"
+        )
+    if time.step > 1 / (20 * CUT_OFF):
+        found.append(
+            f"time step {1e3 * time.step:g} ms: less than 20 steps in a period of {CUT_OFF:g} Hz; use at most"
+            f" {1e3 / (20 * CUT_OFF):g} ms"
+        )
+    if speed * time.step > longest:
+        found.append(
+            f"a pantograph jumps {speed * time.step:.2f} m a step, over elements of {longest:.2f} m; use a"
+            " smaller time step"
+        )
+    supports = catenary.support_positions
+    reached = int(np.searchsorted(supports, start.max(), side="right")) - 1
+    if min(catenary.spans_to_evaluate) - 1 - reached < RUN_IN:
+        found.append(
+            f"only {min(catenary.spans_to_evaluate) - 1 - reached} spans lie between the start and the evaluated"
+            f" ones; {RUN_IN} let the start's transient fade"
+        )
+    return found

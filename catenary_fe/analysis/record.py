@@ -1,0 +1,125 @@
+"""From a journey's arrays to a labelled result with its provenance."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.results import Run
+from catenary_fe.results.run import FORMAT
+from catenary_fe.system import Pantograph
+
+if TYPE_CHECKING:
+    from catenary_fe.fe.drive import Journey
+
+Floats = NDArray[np.float64]
+
+
+def make_run(
+    shape: Shape,
+    pantographs: Sequence[Pantograph],
+    uplifts: Floats,
+    speed: float,
+    time: TimeSettings,
+    journey: Journey,
+    warnings: Sequence[str],
+) -> Run:
+    """Label a journey's histories and note where they come from."""
+    import xarray as xr
+
+    catenary = shape.catenary
+    static = shape.contact_wire_z[shape.mesh.contact.supports, None]
+    nominal = catenary.contact_wire_height
+    by_time = ("pantograph", "time")
+    variables: dict[str, Any] = {
+        "position": _labelled(by_time, journey.position, "m", "position along the line"),
+        "contact_force": _labelled(by_time, journey.contact_force, "N", "contact force, unfiltered"),
+        "wire_height": _labelled(
+            by_time, nominal + journey.wire_height, "m", "height of the contact wire over the head"
+        ),
+        "mass_height": _labelled(
+            ("pantograph", "mass", "time"),
+            nominal + _stack(journey.mass_heights),
+            "m",
+            "height of the masses",
+        ),
+        "dropper_force": _labelled(("dropper", "time"), journey.dropper_force, "N", "dropper tension"),
+        "support_uplift": _labelled(
+            ("support", "time"),
+            journey.support_height - static,
+            "m",
+            "uplift of the contact wire at supports",
+        ),
+    }
+    coordinates: dict[str, Any] = {
+        "time": _labelled(("time",), journey.time, "s", "time"),
+        "pantograph": ("pantograph", _unique([p.name for p in pantographs])),
+        "dropper_position": _labelled(("dropper",), catenary.dropper_positions, "m", "position of droppers"),
+        "dropper_span": ("dropper", catenary.dropper_spans),
+        "support_position": _labelled(("support",), catenary.support_positions, "m", "position of supports"),
+    }
+    if journey.wire_z is not None:
+        variables["contact_wire_height"] = _labelled(
+            ("wire_time", "x"), journey.wire_z, "m", "height of the contact wire"
+        )
+        coordinates["wire_time"] = _labelled(("wire_time",), journey.wire_times, "s", "time of wire shapes")
+        coordinates["x"] = _labelled(("x",), journey.wire_x, "m", "position along the line")
+        coordinates["static_contact_wire_height"] = _labelled(
+            ("x",), shape.contact_wire_z, "m", "height of the contact wire before the run"
+        )
+    attributes = _provenance(shape, pantographs, uplifts, speed, time)
+    attributes["warnings"] = json.dumps(list(warnings))
+    return Run(xr.Dataset(variables, coordinates, attributes))
+
+
+def _labelled(
+    dims: tuple[str, ...], values: Any, units: str, name: str
+) -> tuple[tuple[str, ...], Any, dict[str, str]]:
+    return dims, values, {"units": units, "long_name": name}
+
+
+def _stack(masses: Sequence[Floats]) -> Floats:
+    """Shape (pantographs, masses, times); pantographs with fewer masses are filled up with nan."""
+    most = max(m.shape[0] for m in masses)
+    stacked = np.full((len(masses), most, masses[0].shape[1]), np.nan)
+    for i, heights in enumerate(masses):
+        stacked[i, : heights.shape[0]] = heights
+    return stacked
+
+
+def _unique(names: Sequence[str]) -> list[str]:
+    if len(set(names)) == len(names):
+        return list(names)
+    return [f"{name} ({i})" for i, name in enumerate(names, start=1)]
+
+
+def _provenance(
+    shape: Shape, pantographs: Sequence[Pantograph], uplifts: Floats, speed: float, time: TimeSettings
+) -> dict[str, Any]:
+    catenary = shape.catenary.model_dump_json()
+    records = json.dumps([p.model_dump(mode="json") for p in pantographs])
+    settings = json.dumps({"mesh": asdict(shape.mesh_settings), "time": asdict(time)})
+    inputs = "\n".join([catenary, records, settings, repr(speed)])
+    return {
+        "format": FORMAT,
+        "title": shape.catenary.name,
+        "source": shape.catenary.source,
+        "method": "nonlinear",
+        "speed": speed,
+        "uplift_forces": uplifts,
+        "evaluated_spans": np.array(shape.catenary.spans_to_evaluate, dtype=np.int32),
+        "catenary": catenary,
+        "pantographs": records,
+        "settings": settings,
+        "input_sha256": hashlib.sha256(inputs.encode()).hexdigest(),
+        "versions": json.dumps({name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy")}),
+    }

@@ -1,0 +1,112 @@
+"""Static answers: the wires under given forces, and the elasticity along the line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.results import Elasticity
+from catenary_fe.system import InputError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StaticState:
+    """The catenary under static forces.
+
+    contact_wire_x, contact_wire_z, messenger_wire_x, messenger_wire_z : [m], shape (nodes,)
+    contact_wire_uplift : [m], shape (nodes,), above the unloaded shape
+    dropper_forces : [N], shape (droppers,)
+    """
+
+    contact_wire_x: Floats
+    contact_wire_z: Floats
+    messenger_wire_x: Floats
+    messenger_wire_z: Floats
+    contact_wire_uplift: Floats
+    dropper_forces: Floats
+
+
+def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> StaticState:
+    """Static equilibrium under vertical forces on the contact wire; droppers may go slack.
+
+    forces : pairs of position [m] along the line and upward force [N]
+
+    Raises InputError for positions beyond the line, SolverError if there is no equilibrium.
+    """
+    from catenary_fe.fe.static_load import LoadedCatenary
+
+    _check_positions(shape, np.array([x for x, _ in forces], dtype=float))
+    loaded = LoadedCatenary(shape.catenary, shape.mesh, shape.installation, forces=len(forces))
+    if forces:
+        loaded.solve([x for x, _ in forces], [f for _, f in forces])
+    model = loaded.model
+    contact, messenger = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    return StaticState(
+        contact_wire_x=contact[:, 0],
+        contact_wire_z=contact[:, 1],
+        messenger_wire_x=messenger[:, 0],
+        messenger_wire_z=messenger[:, 1],
+        contact_wire_uplift=contact[:, 1] - shape.contact_wire_z,
+        dropper_forces=model.dropper_forces(),
+    )
+
+
+def elasticity(
+    shape: Shape,
+    *,
+    force: float = 100.0,
+    spans: Sequence[int] | None = None,
+    positions: Sequence[float] | Floats | None = None,
+    points_per_span: int = 24,
+    progress: Callable[[float], None] | None = None,
+) -> Elasticity:
+    """Uplift of the contact wire under a static force, point by point; droppers may go slack.
+
+    force : [N] upward
+    spans : numbers of spans, from 1; unset: the evaluated ones
+    positions : [m] along the line, instead of spans
+    points_per_span : evenly spread, besides the droppers and supports
+
+    Raises InputError for a force that is not positive or positions beyond the line.
+    """
+    from catenary_fe.fe.static_load import lift_curve
+
+    if not (np.isfinite(force) and force > 0):
+        raise InputError(f"elasticity: force = {force!r} N: must be above 0; 100 to 200 N are usual")
+    if points_per_span < 2:
+        raise InputError(f"elasticity: points_per_span = {points_per_span}: at least 2 are needed")
+    x = (
+        _points(shape, spans or shape.catenary.spans_to_evaluate, points_per_span)
+        if positions is None
+        else np.sort(np.asarray(positions, dtype=float))
+    )
+    _check_positions(shape, x)
+    lifts = lift_curve(shape.catenary, shape.mesh, shape.installation, x, force, progress)
+    supports = shape.catenary.support_positions
+    inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
+    return Elasticity(position=x, uplift=lifts, force=force, support_position=inside)
+
+
+def _points(shape: Shape, spans: Sequence[int], count: int) -> Floats:
+    catenary = shape.catenary
+    supports, droppers = catenary.support_positions, catenary.dropper_positions
+    parts = []
+    for number in spans:
+        if not 1 <= number <= len(catenary.spans):
+            raise InputError(f"span {number}: the line has spans 1 to {len(catenary.spans)}")
+        a, b = supports[number - 1], supports[number]
+        parts += [np.linspace(a, b, count + 1), droppers[(droppers > a) & (droppers < b)]]
+    return np.unique(np.round(np.concatenate(parts), 9))
+
+
+def _check_positions(shape: Shape, x: Floats) -> None:
+    length = shape.catenary.length
+    for value in x:
+        if not 0 <= value <= length:
+            raise InputError(f"position {value:g} m lies beyond the line, which runs from 0 to {length:g} m")

@@ -1,0 +1,140 @@
+"""Pantographs as bodies and springs, and their moving contact with the wire."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.model import Model, one_sided
+from catenary_fe.fe.wire import UP, WireItems
+from catenary_fe.system import Pantograph
+
+Floats = NDArray[np.float64]
+_ALONG_TO_UP = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # Mass1D moves along its own first axis
+
+
+@dataclass(frozen=True)
+class PantographItems:
+    """Numbers of a pantograph's items in an Exudyn system.
+
+    nodes : one for each mass, head first; coordinate 0 is the height above the nominal contact wire height
+    uplift_load : the constant force on the lowest mass
+    wire_marker, connector : the contact's point on the wire, and its spring
+    """
+
+    pantograph: Pantograph
+    nodes: list[int]
+    uplift_load: int
+    wire_marker: int
+    connector: int
+
+
+def add_pantograph(model: Model, pantograph: Pantograph, uplift: float, function: object) -> PantographItems:
+    """Add a pantograph's masses and springs, and its contact at the wire's first element.
+
+    uplift : [N] upward force on the lowest mass; its weight is balanced by its frame
+    function : what :func:`contact_function` made for this system
+    """
+    mbs = model.mbs
+    nodes = [int(mbs.AddNode(eii.Node1D(referenceCoordinates=[0.0]))) for _ in pantograph.stages]
+    bodies = [
+        mbs.AddObject(
+            eii.ObjectMass1D(
+                mass=stage.mass,
+                nodeNumber=node,
+                referencePosition=[0, model.catenary.contact_wire_height, 0],
+                referenceRotation=_ALONG_TO_UP,
+            )
+        )
+        for stage, node in zip(pantograph.stages, nodes, strict=True)
+    ]
+    markers = [mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=n, coordinate=0)) for n in nodes]
+    for stage, pair in zip(
+        pantograph.stages, zip(markers, [*markers[1:], model.ground], strict=True), strict=True
+    ):
+        mbs.AddObject(
+            eii.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=list(pair), stiffness=stage.stiffness, damping=stage.damping
+            )
+        )
+    load = mbs.AddLoad(eii.LoadCoordinate(markerNumber=markers[-1], load=uplift))
+    on_wire = mbs.AddMarker(
+        eii.MarkerBodyPosition(bodyNumber=model.contact.elements[0], localPosition=[0, 0, 0])
+    )
+    on_head = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[0], localPosition=[0, 0, 0]))
+    connector = mbs.AddObject(
+        eii.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[on_wire, on_head],
+            stiffness=[0, pantograph.contact_stiffness, 0],
+            damping=[0, pantograph.contact_damping, 0],
+            springForceUserFunction=function,
+        )
+    )
+    return PantographItems(pantograph, nodes, int(load), int(on_wire), int(connector))
+
+
+def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
+    # the head's velocity is seen from the wire's material point; offset[1] holds what the slope adds
+    push = one_sided(displacement[1], velocity[1] - offset[1], stiffness[1], damping[1])
+    return [0.0, push, 0.0]
+
+
+def contact_function(model: Model) -> object:
+    """The unilateral contact law, in C++; it must outlive the connectors that use it."""
+    from exudyn.advancedUtilities import CreateSymbolicUserFunction
+
+    function = CreateSymbolicUserFunction(
+        model.mbs,
+        _push_only,
+        "springForceUserFunction",
+        itemTypeName="ObjectConnectorCartesianSpringDamper",
+    )
+    model.mbs.variables["push only"] = function
+    return function
+
+
+class MovingContact:
+    """Moves each pantograph's contact point along the wire, from step to step."""
+
+    def __init__(self, model: Model, pantographs: Sequence[PantographItems]) -> None:
+        self._mbs = model.mbs
+        self._wire = model.contact
+        self._pantographs = pantographs
+        self._at = [(-1, 0.0)] * len(pantographs)
+
+    def move_to(self, positions: Floats, speed: float) -> None:
+        """Put the contact points at these positions [m] along the track, shape (pantographs,)."""
+        changed = False
+        for i, items in enumerate(self._pantographs):
+            before = self._at[i][0]
+            self._at[i] = element, local = locate(self._wire, float(positions[i]))
+            if element != before:
+                self._mbs.SetMarkerParameter(items.wire_marker, "bodyNumber", self._wire.elements[element])
+                changed = True
+            self._mbs.SetMarkerParameter(items.wire_marker, "localPosition", [local, 0, 0])
+            if items.pantograph.contact_damping:
+                climb = speed * self.inclination(i)
+                self._mbs.SetObjectParameter(items.connector, "offset", [0, climb, 0])
+        if changed:
+            self._mbs.AssembleLTGLists()
+
+    def inclination(self, pantograph: int) -> float:
+        """dz/dx of the wire over a pantograph's head, at the current state."""
+        element, local = self._at[pantograph]
+        slope = self._mbs.GetObjectOutputBody(
+            self._wire.elements[element], exu.OutputVariableType.Director1, [local, 0, 0]
+        )
+        return float(slope[UP] / slope[0])
+
+
+def locate(wire: WireItems, position: float) -> tuple[int, float]:
+    """Number of the wire's element at a position [m] along the track, and the arc length [m] inside it."""
+    x = wire.line.x
+    element = min(max(int(np.searchsorted(x, position, side="right")) - 1, 0), x.size - 2)
+    fraction = (position - x[element]) / (x[element + 1] - x[element])
+    return element, float(fraction * wire.line.lengths[element])

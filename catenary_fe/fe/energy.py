@@ -1,0 +1,56 @@
+"""Energy of a model at its current state: what a run without damping must keep."""
+
+from __future__ import annotations
+
+import exudyn as exu
+import numpy as np
+
+_KINETIC = exu.OutputVariableType.KineticEnergy
+_POTENTIAL = exu.OutputVariableType.PotentialEnergy
+
+
+class EnergyMeter:
+    """Kinetic and stored energy of a system of wires, springs and pantographs.
+
+    The potential of constant forces (weight, tensions, preloads, uplift) counts as stored energy.
+    """
+
+    def __init__(self, mbs: exu.MainSystem) -> None:
+        self._mbs = mbs
+        objects = [mbs.GetObject(i) for i in range(mbs.systemData.NumberOfObjects())]
+        by_type: dict[str, list[int]] = {}
+        for number, item in enumerate(objects):
+            by_type.setdefault(item["objectType"], []).append(number)
+        self._cables = by_type.get("ANCFCable2D", [])
+        self._bodies = [*self._cables, *by_type.get("Mass1D", []), *by_type.get("GenericODE2", [])]
+        self._springs = by_type.get("ConnectorCoordinateSpringDamper", [])
+        self._droppers = [
+            (i, objects[i]["stiffness"], objects[i]["referenceLength"])
+            for i in by_type.get("ConnectorSpringDamper", [])
+        ]
+        self._contacts = [
+            (i, objects[i]["stiffness"][1]) for i in by_type.get("ConnectorCartesianSpringDamper", [])
+        ]
+        self._forces = np.zeros(mbs.systemData.ODE2Size())
+        for i in by_type.get("GenericODE2", []):
+            self._forces[mbs.systemData.GetObjectLTGODE2(i)] += objects[i]["forceVector"]
+        for i in range(mbs.systemData.NumberOfLoads()):
+            load = mbs.GetLoad(i)
+            marker = mbs.GetMarker(load["markerNumber"])
+            index = mbs.systemData.GetNodeLTGODE2(marker["nodeNumber"])[marker["coordinate"]]
+            self._forces[index] += load["load"]
+
+    def energy(self) -> float:
+        """[J] at the current state, above an arbitrary zero."""
+        mbs = self._mbs
+        origin = [0.0, 0.0, 0.0]
+        total = sum(mbs.GetObjectOutputBody(i, _KINETIC, origin) for i in self._bodies)
+        total += sum(mbs.GetObjectOutputBody(i, _POTENTIAL, origin) for i in self._cables)
+        total += sum(mbs.GetObjectOutput(i, _POTENTIAL) for i in self._springs)
+        for i, stiffness, length in self._droppers:
+            stretch = mbs.GetObjectOutput(i, exu.OutputVariableType.Distance) - length
+            total += 0.5 * stiffness * max(stretch, 0.0) ** 2
+        for i, stiffness in self._contacts:
+            depth = mbs.GetObjectOutput(i, exu.OutputVariableType.Displacement)[1]
+            total += 0.5 * stiffness * max(depth, 0.0) ** 2
+        return float(total - self._forces @ mbs.systemData.GetODE2Coordinates())

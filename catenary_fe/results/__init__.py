@@ -1,0 +1,17 @@
+"""What runs return: labelled data with units, statistics, files."""
+
+from catenary_fe.results.elasticity import Elasticity
+from catenary_fe.results.run import Run, load_run
+from catenary_fe.results.signal import band_pass, low_pass, spectrum
+from catenary_fe.results.statistics import ForceStatistics, force_statistics
+
+__all__ = [
+    "Elasticity",
+    "ForceStatistics",
+    "Run",
+    "band_pass",
+    "force_statistics",
+    "load_run",
+    "low_pass",
+    "spectrum",
+]

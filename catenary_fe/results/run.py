@@ -1,0 +1,188 @@
+"""What a run returns: labelled histories, statistics, pictures; saved and loaded as netCDF."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.results.signal import FilterKind, low_pass
+from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.system import Catenary, InputError, Pantograph
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+FORMAT = "catenary_fe run 1"
+
+
+@dataclass(frozen=True)
+class Run:
+    """Histories of a run, as an xarray Dataset with units, and what they came from.
+
+    data : variables position, contact_force, wire_height, mass_height (all by pantograph), dropper_force,
+        support_uplift, and contact_wire_height where the whole wire was stored; each has ``units`` and
+        ``long_name``. Attributes hold the inputs, their hash, versions and settings.
+    wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
+    """
+
+    data: xr.Dataset
+    wall_s: float | None = None
+
+    @property
+    def speed(self) -> float:
+        """[m/s]"""
+        return float(self.data.attrs["speed"])
+
+    @property
+    def method(self) -> str:
+        """How it was computed: 'nonlinear'."""
+        return str(self.data.attrs["method"])
+
+    @property
+    def catenary(self) -> Catenary:
+        """The catenary that was run on."""
+        return Catenary.model_validate_json(self.data.attrs["catenary"])
+
+    @property
+    def pantographs(self) -> tuple[Pantograph, ...]:
+        """The pantographs that ran, in the order of the data."""
+        return tuple(Pantograph.model_validate(p) for p in json.loads(self.data.attrs["pantographs"]))
+
+    @property
+    def evaluated_spans(self) -> tuple[int, ...]:
+        """Numbers of the spans (from 1) that statistics are taken over."""
+        return tuple(int(n) for n in np.atleast_1d(self.data.attrs["evaluated_spans"]))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the program warned of before and after the run."""
+        return tuple(json.loads(self.data.attrs["warnings"]))
+
+    @property
+    def time(self) -> Floats:
+        """[s], shape (times,)."""
+        return np.asarray(self.data["time"].values)
+
+    @property
+    def step(self) -> float:
+        """[s] between the times."""
+        return float(self.time[1] - self.time[0])
+
+    def window(self, pantograph: int, spans: Sequence[int] | None = None) -> NDArray[np.bool_]:
+        """Shape (times,): when a pantograph (from 0) is inside the given spans.
+
+        Raises InputError for spans that the line does not have or the pantograph does not reach.
+        """
+        supports = np.asarray(self.data["support_position"].values)
+        x = np.asarray(self.data["position"].values[pantograph])
+        inside = np.zeros(x.size, dtype=bool)
+        for number in spans or self.evaluated_spans:
+            if not 1 <= number < supports.size:
+                raise InputError(f"span {number}: the line has spans 1 to {supports.size - 1}")
+            inside |= (x >= supports[number - 1]) & (x <= supports[number])
+        if not inside.any():
+            raise InputError(
+                f"pantograph {pantograph + 1} was never inside spans {list(spans or self.evaluated_spans)}"
+            )
+        return inside
+
+    def contact_force_statistics(
+        self, spans: Sequence[int] | None = None, filter: FilterKind = "causal"
+    ) -> list[ForceStatistics]:
+        """Statistics of each pantograph's contact force while it is in the given spans.
+
+        spans : numbers of spans, from 1; unset: the evaluated ones
+        filter : "causal" (as EN 50317 measures) or "zero-phase"
+
+        Raises InputError for spans outside the run.
+        """
+        return [
+            force_statistics(
+                name=str(name),
+                force=np.asarray(self.data["contact_force"].values[i]),
+                height=np.asarray(self.data["wire_height"].values[i]),
+                inside=self.window(i, spans),
+                step=self.step,
+                filter=filter,
+            )
+            for i, name in enumerate(self.data["pantograph"].values)
+        ]
+
+    def filtered_contact_force(self, filter: FilterKind = "causal") -> Floats:
+        """[N], shape (pantographs, times), low-passed at 20 Hz."""
+        return low_pass(np.asarray(self.data["contact_force"].values), self.step, kind=filter)
+
+    def largest_support_uplift(self, spans: Sequence[int] | None = None) -> float:
+        """[m] largest uplift of the contact wire at the supports of the given spans."""
+        numbers = spans or self.evaluated_spans
+        supports = sorted({s for n in numbers for s in (n - 1, n)})
+        return float(self.data["support_uplift"].values[supports].max())
+
+    def summary(self, filter: FilterKind = "causal") -> dict[str, Any]:
+        """Key figures in display units, ready for JSON."""
+        simulated = float(self.time[-1])
+        return {
+            "speed_kmh": round(3.6 * self.speed, 9),
+            "method": self.method,
+            "evaluated_spans": list(self.evaluated_spans),
+            "filter": filter,
+            "pantographs": [s.as_dict() for s in self.contact_force_statistics(filter=filter)],
+            "max_support_uplift_mm": 1e3 * self.largest_support_uplift(),
+            "simulated_s": simulated,
+            "wall_s": self.wall_s,
+            "real_time_factor": simulated / self.wall_s if self.wall_s else None,
+            "warnings": list(self.warnings),
+        }
+
+    def save(self, path: str | Path) -> Path:
+        """Write all data as netCDF (classic format: any program reads it). Raises InputError if it cannot."""
+        path = Path(path)
+        aside = path.with_name(path.name + ".part")
+        try:
+            self.data.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
+            aside.replace(path)
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        return path
+
+    def plot_contact_force(self, ax: Axes | None = None) -> Axes:
+        """Contact force along the line. See :func:`catenary_fe.views.plot_contact_force`."""
+        from catenary_fe.views import plot_contact_force
+
+        return plot_contact_force(self, ax=ax)
+
+    def plot_support_uplift(self, ax: Axes | None = None) -> Axes:
+        """Uplift at the supports. See :func:`catenary_fe.views.plot_support_uplift`."""
+        from catenary_fe.views import plot_support_uplift
+
+        return plot_support_uplift(self, ax=ax)
+
+    def plot_dropper_forces(self, ax: Axes | None = None) -> Axes:
+        """Extremes of the dropper forces. See :func:`catenary_fe.views.plot_dropper_forces`."""
+        from catenary_fe.views import plot_dropper_forces
+
+        return plot_dropper_forces(self, ax=ax)
+
+
+def load_run(path: str | Path) -> Run:
+    """Read a run that was saved. Raises InputError where the file is missing, damaged or something else."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="scipy") as opened:
+            data = opened.load()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file; give the run.nc of a run's folder") from None
+    except Exception as error:  # netCDF readers raise what they like on damaged bytes
+        raise InputError(f"{path}: not a readable netCDF file ({type(error).__name__})") from None
+    if data.attrs.get("format") != FORMAT:
+        raise InputError(f"{path}: not a run of catenary_fe (format {data.attrs.get('format')!r})")
+    return Run(data)
