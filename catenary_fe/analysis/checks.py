@@ -90,9 +90,10 @@ def run_warnings(
         )
     supports = catenary.support_positions
     reached = int(np.searchsorted(supports, start.max(), side="right")) - 1
-    if min(catenary.spans_to_evaluate) - 1 - reached < RUN_IN:
+    between = min(catenary.spans_to_evaluate) - 1 - reached
+    if between < RUN_IN:
         found.append(
-            f"only {min(catenary.spans_to_evaluate) - 1 - reached} spans lie between the start and the evaluated"
-            f" ones; {RUN_IN} let the start's transient fade"
+            f"only {between} spans lie between the start and the evaluated ones; {RUN_IN} let the start's"
+            " transient fade"
         )
     return found

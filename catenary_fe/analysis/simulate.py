@@ -86,8 +86,8 @@ def simulate(
             return run
         uplifts = uplifts * goals / means
     raise SolverError(
-        f"mean contact force: after {_MEAN_FORCE_RUNS} runs the means are {np.round(means, 2).tolist()} N, not"
-        f" {np.round(goals, 2).tolist()} N; give an uplift_force instead of a mean_force"
+        f"mean contact force: after {_MEAN_FORCE_RUNS} runs the means are {np.round(means, 2).tolist()} N,"
+        f" not {np.round(goals, 2).tolist()} N; give an uplift_force instead of a mean_force"
     )
 
 
@@ -131,8 +131,8 @@ def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Pla
     for value in start:
         if not margin <= value < length - margin:
             raise InputError(
-                f"pantograph at {value:g} m: must start between {margin:g} m and {length - margin:g} m, a sixth"
-                " of a span from the line's ends"
+                f"pantograph at {value:g} m: must start between {margin:g} m and {length - margin:g} m, a"
+                " sixth of a span from the line's ends"
             )
     if count > 1 and np.diff(np.sort(start)).min() < 1:
         raise InputError("two pantographs start less than 1 m apart; give positions that differ")

@@ -285,6 +285,7 @@ def _shape(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation
         installation=installation,
         contact_wire_x=contact[:, 0],
         contact_wire_z=contact[:, 1],
+        contact_wire_dz_dx=contact[:, 3] / contact[:, 2],
         messenger_wire_x=messenger[:, 0],
         messenger_wire_z=messenger[:, 1],
         dropper_forces=model.dropper_forces(),

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.fe.model import Installation
@@ -34,7 +34,7 @@ class DropperRow:
     position_m: float
     length_m: float
     installed_length_m: float
-    force_N: float
+    force_N: float  # noqa: N815 the unit's own letter
     contact_wire_height_error_mm: float
 
     def as_dict(self) -> dict[str, float]:
@@ -47,6 +47,7 @@ class Shape:
     """A catenary with its dropper lengths, in static equilibrium on one mesh.
 
     contact_wire_x, contact_wire_z, messenger_wire_x, messenger_wire_z : [m], shape (nodes,)
+    contact_wire_dz_dx : shape (nodes,), inclination
     dropper_forces : [N], shape (droppers,)
     installed_lengths : [m], shape (droppers,), of the loaded droppers
     """
@@ -57,6 +58,7 @@ class Shape:
     installation: Installation
     contact_wire_x: Floats
     contact_wire_z: Floats
+    contact_wire_dz_dx: Floats
     messenger_wire_x: Floats
     messenger_wire_z: Floats
     dropper_forces: Floats
@@ -67,6 +69,15 @@ class Shape:
         """[m], shape (droppers,): height of the contact wire above its design height at each dropper."""
         errors: Floats = self.contact_wire_z[self.mesh.contact.droppers] - self.catenary.design_heights
         return errors
+
+    def contact_wire_height(self, x: ArrayLike) -> Floats:
+        """[m] of the contact wire at positions x [m] along the line, any shape; cubic inside the elements."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        heights: Floats = CubicHermiteSpline(
+            self.contact_wire_x, self.contact_wire_z, self.contact_wire_dz_dx
+        )(np.asarray(x, dtype=float))
+        return heights
 
     @property
     def dropper_lengths(self) -> Floats:

@@ -200,7 +200,7 @@ class _Recorder:
 
     def journey(self) -> Journey:
         trip, model = self._trip, self._model
-        time = trip.time.step * np.arange(trip.steps + 1)
+        time: Floats = np.arange(trip.steps + 1, dtype=np.float64) * trip.time.step
         wire = np.array(self._wire) if self._wire else None
         heads = np.array([masses[0] for masses in self._masses])
         line = model.contact.line

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +87,7 @@ def _wire_mesh(catenary: Catenary, settings: MeshSettings, largest: float) -> Wi
     fixed = np.unique(np.concatenate([supports, droppers]))
     parts = [
         a + _graded(b - a, min(settings.at_clamps, largest), settings.growth, largest)
-        for a, b in zip(fixed[:-1], fixed[1:], strict=True)
+        for a, b in pairwise(fixed)
     ]
     x = np.append(np.concatenate(parts), fixed[-1])
     return WireMesh(x=x, droppers=np.searchsorted(x, droppers), supports=np.searchsorted(x, supports))

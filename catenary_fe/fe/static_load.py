@@ -66,7 +66,7 @@ def lift_curve(
     force: float,
     progress: Callable[[float], None] | None = None,
 ) -> Floats:
-    """[m], shape (points,): how far a force [N] lifts the contact wire at each position [m], one at a time."""
+    """[m], shape (points,): lift of the contact wire at each position [m] under a force [N] there."""
     loaded = LoadedCatenary(catenary, mesh, installation)
     before = loaded.heights([locate(loaded.model.contact, float(x)) for x in positions])
     lifts = np.empty(positions.size)

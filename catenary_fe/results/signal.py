@@ -54,5 +54,6 @@ def _filter(signal: Floats, step: float, cut_off: float, band: str, kind: Filter
 def spectrum(signal: Floats, step: float) -> tuple[Floats, Floats]:
     """Frequencies [Hz] and amplitudes of a signal's Fourier series, its mean removed, Hann window."""
     window = np.hanning(signal.size)
-    amplitude = np.abs(np.fft.rfft((signal - signal.mean()) * window)) * 2 / window.sum()
-    return np.fft.rfftfreq(signal.size, step), amplitude
+    amplitude: Floats = np.abs(np.fft.rfft((signal - signal.mean()) * window)) * 2 / window.sum()
+    frequency: Floats = np.arange(amplitude.size) / (signal.size * step)
+    return frequency, amplitude

@@ -15,7 +15,7 @@ from catenary_fe.system.wire import Dropper, Wire
 
 
 class SteadyArm(Parameters):
-    """Registration of the contact wire at a support: in the plane a vertical spring and a mass on the wire."""
+    """Registration of the contact wire at a support: in the plane a vertical spring and a mass."""
 
     stiffness: NonNegative
     """[N/m] vertical, at the contact wire"""

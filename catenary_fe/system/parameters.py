@@ -1,9 +1,9 @@
-"""Ground for all parameter objects: frozen, keyword-only, checked when made, with errors an engineer can read."""
+"""Base of all parameter objects: frozen, keyword-only, checked, with errors an engineer can read."""
 
 from __future__ import annotations
 
 import difflib
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
@@ -26,14 +26,20 @@ def _not_empty(items: tuple[Any, ...]) -> tuple[Any, ...]:
 NonEmpty = AfterValidator(_not_empty)
 
 
-class _ReadableErrors(type(BaseModel)):  # type: ignore[misc]
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+
+class _ReadableErrors(ModelMetaclass):
     """Catches pydantic's report where an object is made by hand; nested ones keep their place in it."""
 
-    def __call__(cls, *args: Any, **data: Any) -> Any:
+    def __call__(cls, *args: Any, **data: Any) -> Any:  # noqa: N805 a metaclass
         try:
             return super().__call__(*args, **data)
         except ValidationError as error:
-            raise InputError(*problem_lines(error, cls)) from None
+            raise InputError(*problem_lines(error, cast(type[BaseModel], cls))) from None
 
 
 class Parameters(BaseModel, metaclass=_ReadableErrors):

@@ -1,0 +1,184 @@
+"""Commands that need no run: what a layout is, how it hangs, how it gives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from catenary_fe.cli.folder import output_folder
+from catenary_fe.cli.terminal import (
+    json_option,
+    layout_argument,
+    output_option,
+    print_json,
+    print_table,
+    print_warnings,
+    progress_bar,
+    quiet_option,
+)
+from catenary_fe.system import Catenary, load_catenary
+
+
+@click.command(epilog="\b\nExample:\n  catenary-fe info models/layouts/en50318_2002.toml -o info")
+@layout_argument
+@output_option
+@json_option
+def info(layout: str, output: str | None, as_json: bool) -> None:
+    """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
+    from catenary_fe.analysis.checks import layout_warnings
+
+    catenary = load_catenary(layout)
+    facts = layout_facts(catenary)
+    warnings = layout_warnings(catenary)
+    with output_folder(output) as folder:
+        if folder:
+            from catenary_fe.views import plot_layout
+
+            folder.json("info.json", facts | {"warnings": warnings})
+            folder.picture("layout.png", plot_layout(catenary))
+    if as_json:
+        print_json(facts | {"warnings": warnings})
+    else:
+        print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
+        print_warnings(warnings)
+
+
+def layout_facts(catenary: Catenary) -> dict[str, Any]:
+    """Key figures of a layout in display units."""
+    wires = {}
+    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
+        wires[name] = {
+            "tension_kN": wire.tension / 1e3,
+            "mass_per_length_kg_per_m": wire.mass_per_length,
+            "wave_speed_kmh": 3.6 * wire.wave_speed,
+            "impedance_Ns_per_m": wire.impedance,
+        }
+    lengths = [span.length for span in catenary.spans]
+    clamps = sum(d.messenger_clamp_mass + d.contact_wire_clamp_mass for d in catenary.droppers)
+    line = catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
+    return {
+        "name": catenary.name,
+        "source": catenary.source,
+        "length_m": catenary.length,
+        "spans": len(lengths),
+        "span_lengths_m": [min(lengths), max(lengths)],
+        "droppers": len(catenary.droppers),
+        "system_height_m": catenary.system_height,
+        "contact_wire_height_m": catenary.contact_wire_height,
+        **wires,
+        "largest_speed_by_wave_speed_kmh": 0.7 * 3.6 * catenary.contact_wire.wave_speed,
+        "mass_of_wires_kg": line * catenary.length,
+        "mass_of_clamps_kg": clamps,
+        "evaluated_spans": list(catenary.spans_to_evaluate),
+    }
+
+
+def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    rows = []
+    for key, value in facts.items():
+        if isinstance(value, dict):
+            rows += _fact_rows(value, f"{key.replace('_', ' ')}: ")
+        elif key != "name":
+            text = f"{value:.6g}" if isinstance(value, float) else str(value)
+            rows.append((prefix + key.replace("_", " "), text))
+    return rows
+
+
+@click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
+@layout_argument
+@click.option(
+    "--given-lengths", is_flag=True, help="Take the droppers' lengths from the layout and find the heights."
+)
+@output_option
+@json_option
+@quiet_option
+def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, quiet: bool) -> None:
+    """Find the dropper lengths that give the contact wire of a LAYOUT its design height."""
+    from catenary_fe.equilibrium import find_form, find_heights
+
+    catenary = load_catenary(layout)
+    with output_folder(output) as folder:
+        shape = find_heights(catenary) if given_lengths else find_form(catenary)
+        rows = [row.as_dict() for row in shape.dropper_schedule()]
+        result = {
+            "droppers": rows,
+            "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
+            "messenger_support_forces_N": shape.support_forces.tolist(),
+        }
+        if folder:
+            from catenary_fe.views import plot_layout, plot_static_shape
+
+            folder.json("form.json", result)
+            folder.table("dropper_schedule.csv", rows)
+            folder.picture("layout.png", plot_layout(catenary, shape))
+            folder.picture("static_shape.png", plot_static_shape(shape))
+    if as_json:
+        print_json(result)
+    elif not quiet:
+        columns = ("span", "position m", "length m", "installed m", "force N", "height error mm")
+        table = [
+            (
+                int(row["span"]),
+                row["position_m"],
+                f"{row['length_m']:.4f}",
+                f"{row['installed_length_m']:.4f}",
+                f"{row['force_N']:.1f}",
+                f"{row['contact_wire_height_error_mm']:+.3f}",
+            )
+            for row in rows
+        ]
+        print_table(f"{catenary.name}: dropper schedule", columns, table)
+
+
+@click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")
+@layout_argument
+@click.option("--force", "force", type=float, default=100.0, show_default=True, help="Upward force in N.")
+@click.option("--spans", help="Spans to evaluate, e.g. 5,6; unset: the layout's.")
+@output_option
+@json_option
+@quiet_option
+def static(
+    layout: str, force: float, spans: str | None, output: str | None, as_json: bool, quiet: bool
+) -> None:
+    """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
+    from catenary_fe.analysis import elasticity
+    from catenary_fe.equilibrium import find_form
+
+    catenary = load_catenary(layout)
+    numbers = _span_numbers(spans)
+    with output_folder(output) as folder:
+        shape = find_form(catenary)
+        with progress_bar("elasticity", not quiet) as progress:
+            curve = elasticity(shape, force=force, spans=numbers, progress=progress)
+        rows = [
+            {"position_m": float(x), "mm_per_N": 1e3 * float(e)}
+            for x, e in zip(curve.position, curve.values, strict=True)
+        ]
+        result = {"elasticity": rows, "non_uniformity": curve.non_uniformity, "force_N": curve.force}
+        if folder:
+            from catenary_fe.views import plot_elasticity, plot_static_shape
+
+            folder.json("static.json", result)
+            folder.table("elasticity.csv", rows)
+            folder.picture("elasticity.png", plot_elasticity(curve))
+            folder.picture("static_shape.png", plot_static_shape(shape))
+    if as_json:
+        print_json(result)
+    elif not quiet:
+        table = [(row["position_m"], f"{row['mm_per_N']:.4f}") for row in rows]
+        print_table(
+            f"{catenary.name}: elasticity under {force:g} N,"
+            f" non-uniformity {100 * curve.non_uniformity:.1f} %",
+            ("position m", "elasticity mm/N"),
+            table,
+        )
+
+
+def _span_numbers(text: str | None) -> list[int] | None:
+    if text is None:
+        return None
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is not a list of span numbers such as 5,6") from None

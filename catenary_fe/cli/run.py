@@ -1,0 +1,171 @@
+"""The main job: run pantographs along a layout."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.terminal import (
+    json_option,
+    layout_argument,
+    output_option,
+    print_json,
+    print_table,
+    print_warnings,
+    progress_bar,
+    quiet_option,
+)
+from catenary_fe.system import InputError, Pantograph, load_catenary, load_pantograph
+
+if TYPE_CHECKING:
+    from catenary_fe.equilibrium import Shape
+    from catenary_fe.results import Run
+
+EPILOG = """\b
+Examples:
+  catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o out
+  catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json"""
+
+
+class _ManyValues(click.Command):
+    """Lets ``--pantograph-at 110 10`` stand for the option given twice."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        spread: list[str] = []
+        listing = False
+        for argument in args:
+            if listing and _is_number(argument) and _is_number(spread[-1]):
+                spread += ["--pantograph-at", argument]
+                continue
+            listing = argument == "--pantograph-at" or (listing and _is_number(argument))
+            spread.append(argument)
+        return super().parse_args(ctx, spread)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+@click.command(cls=_ManyValues, epilog=EPILOG)
+@layout_argument
+@click.option(
+    "--pantograph", "names", multiple=True, required=True, help="Name in the library, or TOML file."
+)
+@click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
+@click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
+@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
+@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
+@click.option(
+    "--filter",
+    "filter_kind",
+    type=click.Choice(["causal", "zero-phase"]),
+    default="causal",
+    show_default=True,
+)
+@click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
+@output_option
+@json_option
+@quiet_option
+def run(
+    layout: str,
+    names: tuple[str, ...],
+    positions: tuple[float, ...],
+    speed_kmh: float,
+    time_step_ms: float,
+    element_m: float | None,
+    filter_kind: Any,
+    store_wire_ms: float | None,
+    output: str | None,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
+    from catenary_fe.analysis import simulate
+    from catenary_fe.equilibrium import find_form
+    from catenary_fe.fe import MeshSettings, TimeSettings
+
+    catenary = load_catenary(layout)
+    pantographs = _pantographs(names, positions)
+    mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
+    time = TimeSettings(step=time_step_ms / 1e3)
+    with output_folder(output) as folder:
+        shape = find_form(catenary, mesh)
+        with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress:
+            result = simulate(
+                shape,
+                pantographs,
+                speed=speed_kmh / 3.6,
+                positions=positions or None,
+                time=time,
+                store_wire=store_wire_ms / 1e3 if store_wire_ms is not None else None,
+                progress=progress,
+            )
+        summary = result.summary(filter=filter_kind)
+        if folder:
+            write_run(folder, shape, result, summary)
+    if as_json:
+        print_json(summary)
+    elif not quiet:
+        _print_summary(catenary.name, summary)
+        if output:
+            click.echo(f"results and pictures in {output}")
+    if not as_json:
+        print_warnings(summary["warnings"])
+
+
+def write_run(folder: Folder, shape: Shape, result: Run, summary: dict[str, Any]) -> None:
+    """Results, pictures and summary of a run."""
+    from catenary_fe import views
+
+    result.save(folder.path / "run.nc")
+    folder.json("summary.json", summary)
+    folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
+    folder.picture("static_shape.png", views.plot_static_shape(shape))
+    folder.picture("contact_force.png", views.plot_contact_force(result))
+    folder.picture("support_uplift.png", views.plot_support_uplift(result))
+    folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
+
+
+def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[Pantograph]:
+    """One pantograph a position; a single name serves for all positions."""
+    loaded = [load_pantograph(name) for name in names]
+    if len(loaded) == 1 and len(positions) > 1:
+        return loaded * len(positions)
+    if len(loaded) > 1 and len(positions) not in (0, len(loaded)):
+        raise InputError(f"{len(positions)} positions for {len(loaded)} pantographs: give one for each")
+    return loaded
+
+
+_ROWS = (
+    ("mean force (N)", "mean_N", ".1f"),
+    ("standard deviation (N)", "std_N", ".1f"),
+    ("  0 to 5 Hz (N)", "std_0_5_Hz_N", ".1f"),
+    ("  5 to 20 Hz (N)", "std_5_20_Hz_N", ".1f"),
+    ("statistical maximum (N)", "statistical_max_N", ".1f"),
+    ("statistical minimum (N)", "statistical_min_N", ".1f"),
+    ("actual maximum (N)", "max_N", ".1f"),
+    ("actual minimum (N)", "min_N", ".1f"),
+    ("contact loss (%)", "contact_loss_percent", ".2f"),
+    ("range of the contact point (mm)", "contact_point_range_mm", ".1f"),
+)
+
+
+def _print_summary(title: str, summary: dict[str, Any]) -> None:
+    pantographs = summary["pantographs"]
+    rows = [(text, *(format(p[key], form) for p in pantographs)) for text, key, form in _ROWS]
+    uplift = f"{summary['max_support_uplift_mm']:.1f}"
+    rows.append(("largest uplift at a support (mm)", uplift, *[""] * (len(pantographs) - 1)))
+    spans = ", ".join(map(str, summary["evaluated_spans"]))
+    heading = f"{title}, {summary['speed_kmh']:g} km/h, spans {spans}, {summary['filter']} 20 Hz filter"
+    print_table(heading, ("", *(p["name"] for p in pantographs)), rows)
+    click.echo(
+        f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
+        f" {summary['real_time_factor']:.2f} of real time"
+    )

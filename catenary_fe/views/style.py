@@ -1,0 +1,49 @@
+"""What all pictures have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+CONTACT = "#c44e1c"  # contact wire
+MESSENGER = "#1f5a85"  # messenger wire
+DROPPER = "#7a7a7a"
+SUPPORT = "#444444"
+PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
+
+
+def new_axes(ax: Axes | None, size: tuple[float, float] = (10.0, 4.0)) -> Axes:
+    """The given axes, or those of a new figure of this size in inches; the screen is never used."""
+    if ax is not None:
+        return ax
+    figure = Figure(figsize=size, layout="constrained")
+    axes: Axes = figure.subplots()
+    return axes
+
+
+def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
+    """Labels, title and a light grid."""
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+    ax.set_title(title, fontsize=10, loc="left")
+    ax.grid(color="#dddddd", linewidth=0.6)
+    ax.set_axisbelow(True)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    return ax
+
+
+def mark_supports(ax: Axes, positions: Iterable[float], label: bool = True) -> None:
+    """Thin vertical lines at the supports."""
+    for i, x in enumerate(positions):
+        ax.axvline(
+            x, color=SUPPORT, linewidth=0.7, linestyle=":", label="support" if label and i == 0 else None
+        )
+
+
+def headroom(ax: Axes, share: float) -> None:
+    """Leave room for the legend above the curves, as a share of their height."""
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + share * (high - low))
