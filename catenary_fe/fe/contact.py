@@ -4,18 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.model import Model, one_sided
+from catenary_fe.fe.model import one_sided
 from catenary_fe.fe.wire import UP, WireItems
 from catenary_fe.system import Pantograph
 
 Floats = NDArray[np.float64]
 _ALONG_TO_UP = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # Mass1D moves along its own first axis
+
+
+class Track(Protocol):
+    """A system with a wire that pantographs run along, such as a :class:`~catenary_fe.fe.model.Model`."""
+
+    @property
+    def mbs(self) -> Any: ...
+
+    @property
+    def contact(self) -> WireItems: ...
+
+    @property
+    def ground(self) -> int: ...
+
+    @property
+    def contact_wire_height(self) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -34,7 +51,7 @@ class PantographItems:
     connector: int
 
 
-def add_pantograph(model: Model, pantograph: Pantograph, uplift: float, function: object) -> PantographItems:
+def add_pantograph(model: Track, pantograph: Pantograph, uplift: float, function: object) -> PantographItems:
     """Add a pantograph's masses and springs, and its contact at the wire's first element.
 
     uplift : [N] upward force on the lowest mass; its weight is balanced by its frame
@@ -47,7 +64,7 @@ def add_pantograph(model: Model, pantograph: Pantograph, uplift: float, function
             eii.ObjectMass1D(
                 mass=stage.mass,
                 nodeNumber=node,
-                referencePosition=[0, model.catenary.contact_wire_height, 0],
+                referencePosition=[0, model.contact_wire_height, 0],
                 referenceRotation=_ALONG_TO_UP,
             )
         )
@@ -84,7 +101,7 @@ def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, o
     return [0.0, push, 0.0]
 
 
-def contact_function(model: Model) -> object:
+def contact_function(model: Track) -> object:
     """The unilateral contact law, in C++; it must outlive the connectors that use it."""
     from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
@@ -101,7 +118,7 @@ def contact_function(model: Model) -> object:
 class MovingContact:
     """Moves each pantograph's contact point along the wire, from step to step."""
 
-    def __init__(self, model: Model, pantographs: Sequence[PantographItems]) -> None:
+    def __init__(self, model: Track, pantographs: Sequence[PantographItems]) -> None:
         self._mbs = model.mbs
         self._wire = model.contact
         self._pantographs = pantographs

@@ -98,6 +98,8 @@ def _graded(length: float, first: float, growth: float, largest: float) -> Float
     half: list[float] = []
     while sum(half) + (size := min(first * growth ** len(half), largest)) < length / 2:
         half.append(size)
+    if half and length - 2 * sum(half) < half[-1]:
+        half.pop()  # what is left in the middle must not be a sliver
     rest = length - 2 * sum(half)
     middle = max(1, int(np.ceil(rest / largest - 1e-9)))
     sizes = np.array([*half, *[rest / middle] * middle, *half[::-1]])

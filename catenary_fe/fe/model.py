@@ -67,6 +67,11 @@ class Model:
     held_arms: dict[int, int]
     held_supports: dict[int, int]
 
+    @property
+    def contact_wire_height(self) -> float:
+        """[m], nominal."""
+        return self.catenary.contact_wire_height
+
     def wire_shapes(self, coordinates: Floats) -> tuple[Floats, Floats]:
         """Total coordinates of the nodes of contact and messenger wire, each of shape (nodes, 4)."""
         n = COORDINATES * len(self.contact.nodes)

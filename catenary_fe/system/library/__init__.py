@@ -77,21 +77,21 @@ def wire(name: str, *, tension: float) -> Wire:
 
 def wire_record(name: str) -> dict[str, Any]:
     """What the library knows of a wire: all fields but the tension. Raises InputError with the near names."""
-    return dict(_find("wire", name, _records("wires"))) | {"name": name}
+    return _find("wire", name)
 
 
 def pantograph(name: str) -> Pantograph:
     """A pantograph of the library. Raises InputError with the near names."""
-    return Pantograph(**(dict(_find("pantograph", name, _records("pantographs"))) | {"name": name}))
+    return Pantograph(**_find("pantograph", name))
 
 
 def line(name: str) -> Line:
     """A line of the library. Raises InputError with the near names."""
-    record = dict(_find("line", name, _records("lines")))
+    record = _find("line", name)
     for key in ("contact_wire", "messenger_wire", "stitch_wire"):
         if key in record:
             record[key] = wire(record[key]["library"], tension=record[key]["tension"])
-    return Line(**(record | {"name": name}))
+    return Line(**record)
 
 
 def names(kind: str) -> list[str]:
@@ -105,11 +105,13 @@ def _records(kind: str) -> Mapping[str, Mapping[str, Any]]:
     return tomllib.loads(text)
 
 
-def _find(kind: str, name: str, records: Mapping[str, Mapping[str, Any]]) -> Mapping[str, Any]:
+def _find(kind: str, name: str) -> dict[str, Any]:
+    """The record of this name, in whatever case, with the name as the library writes it."""
+    records = _records(f"{kind}s")
     folded = {known.casefold(): known for known in records}
     known = folded.get(name.casefold())
     if known:
-        return records[known]
+        return {**records[known], "name": known}
     near = [folded[n] for n in difflib.get_close_matches(name.casefold(), folded, n=3, cutoff=0.4)]
     listed = ", ".join(f"'{n}'" for n in near or records)
     raise InputError(f"no {kind} '{name}' in the library; {'near' if near else 'known'} names: {listed}")

@@ -1,0 +1,190 @@
+"""One wire, its ends, supports and what it carries, as an Exudyn system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.fe.solver import new_system, solve_static
+from catenary_fe.fe.wire import (
+    ALONG,
+    COORDINATES,
+    GRAVITY,
+    UP,
+    WireItems,
+    WireLine,
+    add_ground_coordinate,
+    add_wire,
+    anchor_and_tension,
+    hermite,
+    hold,
+)
+from catenary_fe.fe.wire_problem import Function, WireProblem
+from catenary_fe.theory import MovingForce
+
+Floats = NDArray[np.float64]
+_DIFFERENCE = 1e-4  # [m] for slopes of the initial functions
+
+
+@dataclass(frozen=True)
+class WireSystem:
+    """A system of one wire, assembled.
+
+    mbs, wire, ground : the system, its wire and a coordinate marker that never moves
+    mass : sparse, [kg] what the wire carries
+    stiffness : sparse, [N/m] of foundation and springs
+    """
+
+    mbs: Any
+    wire: WireItems
+    ground: int
+    mass: Any
+    stiffness: Any
+
+    @property
+    def size(self) -> int:
+        """Number of the wire's coordinates, which come first."""
+        return COORDINATES * len(self.wire.nodes)
+
+    def heights(self) -> Floats:
+        """[m] shape (nodes,), at the current state."""
+        q = self.mbs.systemData.GetODE2Coordinates()[: self.size]
+        heights: Floats = self.wire.line.z + q[UP::COORDINATES]
+        return heights
+
+    def carried_energy(self) -> float:
+        """[J] in foundation and springs at the current state, less their force at z = 0 times the way."""
+        q = self.mbs.systemData.GetODE2Coordinates()[: self.size]
+        return float(0.5 * q @ (self.stiffness @ q))
+
+
+def build_wire(problem: WireProblem) -> WireSystem:
+    """Build all but the moving loads; set the initial state."""
+    mbs = new_system()
+    items = add_wire(mbs, problem.wire, _initial_line(problem))
+    ground = add_ground_coordinate(mbs)
+    _hold(mbs, items, ground, problem)
+    mass, stiffness = _add_carried(mbs, items, problem)
+    mbs.Assemble()
+    return WireSystem(mbs, items, ground, mass, stiffness)
+
+
+def set_initial_velocity(system: WireSystem, problem: WireProblem) -> None:
+    """Set the initial velocity of a system that has all its parts."""
+    if problem.initial_velocity is None:
+        return
+    data = system.mbs.systemData
+    v = data.GetODE2Coordinates_t(configuration=exu.ConfigurationType.Initial)
+    rate, slope_rate = _values_and_slopes(problem.initial_velocity, system.wire.line.x)
+    v[UP : system.size : COORDINATES] = rate
+    v[UP + 2 : system.size : COORDINATES] = slope_rate
+    for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
+        data.SetODE2Coordinates_t(v, configuration=configuration)
+
+
+def wire_at_rest(problem: WireProblem) -> Floats:
+    """[m] shape (nodes,), static deflection under the moving forces where they start, and the weight.
+
+    Raises SolverError if there is no equilibrium.
+    """
+    system = build_wire(problem)
+    forces = np.zeros(system.size)
+    line = system.wire.line
+    for load in problem.loads:
+        assert isinstance(load, MovingForce)
+        e = min(max(int(np.searchsorted(line.x, load.start, side="right")) - 1, 0), line.x.size - 2)
+        h = line.x[e + 1] - line.x[e]
+        index = COORDINATES * e + np.array([UP, UP + 2, COORDINATES + UP, COORDINATES + UP + 2])
+        forces[index] += load.contact_force(0.0, 0.0) * hermite((load.start - line.x[e]) / h, h)
+    system.mbs.AddObject(eii.ObjectGenericODE2(nodeNumbers=system.wire.nodes, forceVector=forces))
+    system.mbs.Assemble()
+    solve_static(system.mbs, what="wire at rest")
+    return system.heights()
+
+
+def vertical_matrices(problem: WireProblem) -> tuple[Any, Any]:
+    """Sparse stiffness and mass matrix of small vertical motions, held nodes taken out."""
+    system = build_wire(problem)
+    elements = system.wire.elements
+    K = stiffness_matrix(system.mbs, elements)[: system.size, : system.size] + system.stiffness
+    M = mass_matrix(system.mbs, elements)[: system.size, : system.size] + system.mass
+    held = [COORDINATES * node + UP for node in _held_nodes(problem)]
+    vertical = [COORDINATES * i + j for i in range(len(system.wire.nodes)) for j in (UP, UP + 2)]
+    free = np.array(sorted(set(vertical) - set(held)))
+    return K[free][:, free], M[free][:, free]
+
+
+def _held_nodes(problem: WireProblem) -> list[int]:
+    return sorted({0, len(problem.x) - 1, *(problem.node(s) for s in problem.supports)})
+
+
+def _initial_line(problem: WireProblem) -> WireLine:
+    x = np.asarray(problem.x, dtype=float)
+    if problem.initial_deflection is None:
+        return WireLine.through(problem.wire, x, np.zeros(x.size), np.zeros(x.size))
+    return WireLine.through(problem.wire, x, *_values_and_slopes(problem.initial_deflection, x))
+
+
+def _values_and_slopes(function: Function, x: Floats) -> tuple[Floats, Floats]:
+    slopes = (function(x + _DIFFERENCE) - function(x - _DIFFERENCE)) / (2 * _DIFFERENCE)
+    return np.asarray(function(x), dtype=float), np.asarray(slopes, dtype=float)
+
+
+def _hold(mbs: exu.MainSystem, items: WireItems, ground: int, problem: WireProblem) -> None:
+    if problem.tensioned:
+        anchor_and_tension(mbs, items, ground, problem.wire)
+    else:
+        for node in (0, len(items.nodes) - 1):
+            hold(mbs, items, node, ALONG, ground)
+    for node in _held_nodes(problem):
+        hold(mbs, items, node, UP, ground)
+
+
+def _add_carried(mbs: exu.MainSystem, items: WireItems, problem: WireProblem) -> tuple[Any, Any]:
+    """Point masses, foundation, springs, dampers and weight as one object; returns its M and K.
+
+    The foundation's matrix is k/ρ times the vertical part of the wire's mass matrix: the same shape functions.
+    """
+    from scipy.sparse import csr_matrix, diags
+
+    mbs.Assemble()
+    wire_mass = mass_matrix(mbs, items.elements)
+    up = np.tile(np.eye(COORDINATES)[UP], len(items.nodes))
+    slope_up = np.roll(up, 2)
+    vertical = diags(up + slope_up)
+    M = diags(_at_nodes(problem, problem.masses, [1.0, 1.0, 0.0, 0.0]))
+    D = diags(_at_nodes(problem, problem.dampers, [0.0, 1.0, 0.0, 0.0]))
+    K = diags(_at_nodes(problem, problem.springs, [0.0, 1.0, 0.0, 0.0]))
+    bedding = problem.foundation_stiffness / problem.wire.mass_per_length
+    K = csr_matrix(K + bedding * (vertical @ wire_mass @ vertical))
+    # the springs are force-free at z = 0, not where the wire starts
+    force = -K @ (items.line.coordinates().ravel() * (up + slope_up))
+    if problem.weight:
+        force = force - GRAVITY * (wire_mass + M) @ up
+    nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=K.shape))
+    mbs.AddObject(
+        eii.ObjectGenericODE2(
+            nodeNumbers=items.nodes,
+            massMatrix=exu.MatrixContainer(csr_matrix(M)),
+            stiffnessMatrix=exu.MatrixContainer(K),
+            dampingMatrix=exu.MatrixContainer(csr_matrix(D)),
+            forceVector=force,
+            # as in add_overlay: keeps Exudyn from differentiating the object numerically
+            jacobianUserFunction=lambda *_: nothing,
+        )
+    )
+    return M, K
+
+
+def _at_nodes(problem: WireProblem, values: Any, axes: list[float]) -> Floats:
+    """Shape (coordinates,): values by position put on the coordinates of their nodes."""
+    at = np.zeros((len(problem.x), COORDINATES))
+    for position, value in values.items():
+        at[problem.node(position)] += value * np.array(axes)
+    return at.ravel()

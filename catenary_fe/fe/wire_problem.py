@@ -1,0 +1,128 @@
+"""One wire to be set in motion, and how it moved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.system import InputError, Pantograph, Wire
+from catenary_fe.theory import ElasticPantograph, MovingForce
+
+Floats = NDArray[np.float64]
+Function = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlidingPantograph:
+    """A pantograph of lumped masses in moving contact with the wire, its heads at z = 0 when it starts.
+
+    uplift : [N] constant force on the lowest mass
+    speed : [m/s]
+    start : [m] where it is at t = 0
+    """
+
+    pantograph: Pantograph
+    uplift: float
+    speed: float
+    start: float = 0.0
+
+
+Load = MovingForce | ElasticPantograph | SlidingPantograph
+
+
+@dataclass(frozen=True, kw_only=True)
+class WireProblem:
+    """A wire along the track, held in height at both ends.
+
+    wire : its mass per length, tension and stiffnesses
+    x : [m] shape (nodes,), rising, of the nodes; supports, masses and springs lie on nodes
+    tensioned : the last node is free along the track and pulled by the wire's tension; otherwise both ends are
+        fixed, and the tension rises as the wire is deflected
+    supports : [m] rigid supports, which let the wire slide along the track
+    foundation_stiffness : [N/m²] vertical, per length of the wire
+    masses : [kg] by position [m]
+    springs : [N/m] vertical, to the ground, by position [m]
+    dampers : [N s/m] vertical, to the ground, by position [m]
+    weight : the wire and its masses weigh, and the motion starts as they are let go
+    initial_deflection : [m] of positions [m], smooth, 0 at ends and supports; unset: straight
+    initial_velocity : [m/s] of positions [m], smooth, likewise; unset: at rest
+    loads : forces and pantographs that move along the wire; they act while they are on it
+
+    Raises InputError where something lies off the nodes.
+    """
+
+    wire: Wire
+    x: Floats
+    tensioned: bool = True
+    supports: Sequence[float] = ()
+    foundation_stiffness: float = 0.0
+    masses: Mapping[float, float] = field(default_factory=dict)
+    springs: Mapping[float, float] = field(default_factory=dict)
+    dampers: Mapping[float, float] = field(default_factory=dict)
+    weight: bool = False
+    initial_deflection: Function | None = None
+    initial_velocity: Function | None = None
+    loads: Sequence[Load] = ()
+
+    def __post_init__(self) -> None:
+        x = np.asarray(self.x, dtype=float)
+        if x.ndim != 1 or x.size < 2 or not (np.diff(x) > 0).all():
+            raise InputError("x: the nodes' positions must rise; give at least two")
+        for position in (*self.supports, *self.masses, *self.springs, *self.dampers):
+            self.node(position)
+
+    def node(self, position: float) -> int:
+        """Number of the node at a position [m]. Raises InputError if there is none."""
+        nearest = int(np.abs(self.x - position).argmin())
+        if abs(self.x[nearest] - position) > 1e-6:
+            raise InputError(
+                f"{position:g} m is not on a node, the nearest is at {self.x[nearest]:g} m; add it to x"
+            )
+        return nearest
+
+
+@dataclass(frozen=True)
+class WireMotion:
+    """Motion of a wire, complete.
+
+    t : [s] shape (times,)
+    x : [m] shape (nodes,)
+    deflection : [m] shape (times, nodes), upwards
+    velocity : [m/s] shape (times, nodes)
+    forces : [N] shape (times, loads), of each load on the wire, upwards; 0 while it is off the wire
+    under_loads : [m] shape (times, loads), deflection of the wire at each load; NaN while it is off
+    heads : [m] shape (times, loads), height of each pantograph's head; NaN for plain forces
+    energy : [J] shape (times,), kinetic and stored, of the wire and what it carries; empty unless asked for
+    """
+
+    t: Floats
+    x: Floats
+    deflection: Floats
+    velocity: Floats
+    forces: Floats
+    under_loads: Floats
+    heads: Floats
+    energy: Floats
+
+    def at(self, time: float) -> Floats:
+        """[m] shape (nodes,), the deflection at the stored time [s] nearest to the given one."""
+        shape: Floats = self.deflection[np.abs(self.t - time).argmin()]
+        return shape
+
+
+def even_nodes(fixed: Sequence[float] | Floats, element: float) -> Floats:
+    """Positions [m] of nodes on all the fixed points and evenly between them.
+
+    fixed : [m] ends, supports and whatever needs a node
+    element : [m] largest length of an element
+    """
+    points = np.unique(np.asarray(fixed, dtype=float))
+    parts = [
+        np.linspace(a, b, max(1, int(np.ceil((b - a) / element - 1e-9))), endpoint=False)
+        for a, b in pairwise(points)
+    ]
+    return np.append(np.concatenate(parts), points[-1])

@@ -1,0 +1,112 @@
+"""Set one wire in motion and write down how it moves.
+
+The model behind the paper's figures; without weight and from a straight line unless asked otherwise, so that
+it may be compared with closed forms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.energy import EnergyMeter
+from catenary_fe.fe.solver import solve_dynamic
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.fe.wire import COORDINATES, UP
+from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_velocity
+from catenary_fe.fe.wire_loads import WireLoad, WireTrack, add_load
+from catenary_fe.fe.wire_problem import WireMotion, WireProblem
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+
+def run_wire(
+    problem: WireProblem,
+    *,
+    duration: float,
+    time: TimeSettings | None = None,
+    interval: float | None = None,
+    energy: bool = False,
+    progress: Progress | None = None,
+) -> WireMotion:
+    """Integrate from the initial deflection and velocity.
+
+    duration : [s], a whole number of steps
+    time : settings of the integration; unset: steps of 0.5 ms
+    interval : [s] between stored times, a whole number of steps; unset: every step
+    energy : store the energy of the wire and its springs too; not with a sliding pantograph
+    progress : called with the share done, 0 to 1
+
+    Raises SolverError if a step does not converge.
+    """
+    time = time or TimeSettings(step=5e-4, tolerance=1e-6)
+    system = build_wire(problem)
+    mbs = system.mbs
+    meter = EnergyMeter(mbs) if energy else None
+    track = WireTrack(mbs, system.wire, system.ground, contact_wire_height=0.0)
+    loads = [add_load(track, load) for load in problem.loads]
+    mbs.Assemble()
+    set_initial_velocity(system, problem)
+    for load in loads:
+        load.move_to(0.0)
+    steps = round(duration / time.step)
+    every = round(interval / time.step) if interval else 1
+    recorder = _Recorder(system, loads, meter, steps, every)
+
+    def before_step(mbs: exu.MainSystem, end: float) -> bool:
+        count = round(end / time.step)
+        recorder.record(count - 1)
+        for load in loads:
+            load.move_to(end)
+        if progress and count % 50 == 0:
+            progress(count / steps)
+        return True
+
+    mbs.SetPreStepUserFunction(before_step)
+    solve_dynamic(mbs, steps=steps, time=time, what="wire")
+    recorder.record(steps)
+    return recorder.motion(time.step)
+
+
+class _Recorder:
+    """Reads the state at every so many steps."""
+
+    def __init__(
+        self,
+        system: WireSystem,
+        loads: Sequence[WireLoad],
+        meter: EnergyMeter | None,
+        steps: int,
+        every: int,
+    ) -> None:
+        self._system, self._loads, self._meter, self._every = system, loads, meter, every
+        self._counts = np.arange(0, steps + 1, every)
+        shape = (self._counts.size, len(system.wire.nodes))
+        self._deflection, self._velocity = np.empty(shape), np.empty(shape)
+        self._at_loads = np.full((3, self._counts.size, len(loads)), np.nan)
+        self._energy = np.empty(self._counts.size if meter else 0)
+
+    def record(self, count: int) -> None:
+        if count % self._every:
+            return
+        row = count // self._every
+        v = self._system.mbs.systemData.GetODE2Coordinates_t()[: self._system.size]
+        self._deflection[row], self._velocity[row] = self._system.heights(), v[UP::COORDINATES]
+        for i, load in enumerate(self._loads):
+            self._at_loads[:, row, i] = load.force(), load.deflection(), load.head()
+        if self._meter:
+            self._energy[row] = self._meter.energy() + self._system.carried_energy()
+
+    def motion(self, step: float) -> WireMotion:
+        return WireMotion(
+            self._counts * step,
+            self._system.wire.line.x,
+            self._deflection,
+            self._velocity,
+            *self._at_loads,
+            self._energy,
+        )

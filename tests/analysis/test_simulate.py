@@ -1,0 +1,174 @@
+"""Runs: the reference model's accepted ranges, convergence, mean force, several pantographs, bad questions."""
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.analysis.checks import run_warnings
+
+# accepted ranges of EN 50318:2002 (secondary source)
+RANGES = {
+    250: {
+        "mean_N": (110, 120), "std_N": (26, 31), "statistical_max_N": (190, 210),
+        "statistical_min_N": (20, 40), "max_N": (175, 210), "min_N": (50, 75),
+        "contact_loss_percent": (0, 0), "max_support_uplift_mm": (48, 55),
+    },
+    300: {
+        "mean_N": (110, 120), "std_N": (32, 40), "statistical_max_N": (210, 230),
+        "statistical_min_N": (-5, 20), "max_N": (190, 225), "min_N": (30, 55),
+        "contact_loss_percent": (0, 0), "max_support_uplift_mm": (55, 65),
+    },
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def reference_runs(reference_shape, pantograph):
+    return {v: cf.simulate(reference_shape, [pantograph], speed=v / 3.6) for v in RANGES}
+
+
+@pytest.mark.parametrize(
+    ("speed", "quantity"), [(speed, quantity) for speed, ranges in RANGES.items() for quantity in ranges]
+)
+def test_the_reference_model_lies_in_its_accepted_ranges(reference_runs, speed, quantity):
+    summary = reference_runs[speed].summary()
+    values = summary["pantographs"][0] | {"max_support_uplift_mm": summary["max_support_uplift_mm"]}
+    low, high = RANGES[speed][quantity]
+    assert low <= values[quantity] <= high
+
+
+def test_a_false_model_leaves_the_ranges(reference, pantograph):
+    """Droppers that push would be a plausible slip: the independent model has σ = 58 N with them."""
+    rigid = cf.Support(
+        messenger_stiffness=5e5, steady_arm=cf.SteadyArm(stiffness=300.0, mass=0.3, holds_design_height=False)
+    )
+    run = cf.simulate(cf.find_form(reference.replace(supports=(rigid,) * 11)), [pantograph], speed=250 / 3.6)
+    low, high = RANGES[250]["std_N"]
+    assert not low <= run.contact_force_statistics()[0].std <= high
+
+
+def test_mean_and_base_spring_balance(reference_runs):
+    """Over many spans the mean force is the uplift minus the base spring's pull."""
+    run = reference_runs[300]
+    spans = (3, 4, 5, 6, 7, 8)
+    inside = run.window(0, spans)
+    pull = 50.0 * (run.data["mass_height"].values[0, 1][inside] - 5.3).mean()
+    # 1 N: the masses' momentum at the two ends of four seconds
+    assert run.contact_force_statistics(spans)[0].mean == pytest.approx(120 - pull, abs=1.0)
+
+
+def test_halving_mesh_and_step_moves_sigma_by_less_than_two_percent(reference, pantograph):
+    """On six spans, to keep it short; the study in models/studies does it on ten."""
+    line = reference.replace(
+        spans=reference.spans[:6], supports=reference.supports[:7], evaluated_spans=(4, 5)
+    )
+    coarse = cf.simulate(cf.find_form(line), [pantograph], speed=300 / 3.6)
+    shape = cf.find_form(line, cf.MeshSettings().halved())
+    fine = cf.simulate(shape, [pantograph], speed=300 / 3.6, time=cf.TimeSettings(step=5e-4))
+    sigma, finer = (run.contact_force_statistics()[0].std for run in (coarse, fine))
+    assert sigma == pytest.approx(finer, rel=0.02)
+    assert coarse.largest_support_uplift() == pytest.approx(fine.largest_support_uplift(), rel=0.01)
+
+
+def test_a_mean_force_is_reached(short_shape):
+    wanted = cf.library.pantograph("EN 50318:2018 AC")
+    run = cf.simulate(short_shape, [wanted], speed=250 / 3.6)
+    target = 0.00097 * 250**2 + 70
+    assert run.contact_force_statistics()[0].mean == pytest.approx(target, abs=0.1)
+    uplift = float(run.data.attrs["uplift_forces"])
+    assert uplift > target + 2  # the base spring of 160 N/m is held down
+
+
+def test_two_pantographs(reference, pantograph):
+    line = reference.replace(
+        spans=reference.spans[:6], supports=reference.supports[:7], evaluated_spans=(3,)
+    )
+    run = cf.simulate(cf.find_form(line), [pantograph, pantograph], speed=250 / 3.6, positions=[60.0, 10.0])
+    leading, trailing = run.contact_force_statistics()
+    assert (leading.pantograph, trailing.pantograph) == ("EN 50318:2002 (1)", "EN 50318:2002 (2)")
+    assert run.data["position"].values[0, -1] - run.data["position"].values[1, -1] == pytest.approx(50)
+    assert trailing.std > 1.1 * leading.std  # it runs in the leading one's wake
+    alone = cf.simulate(cf.find_form(line), [pantograph], speed=250 / 3.6, positions=[60.0])
+    ahead = alone.contact_force_statistics()[0]
+    # what the trailing one sends forward at wave speed reaches the leading one weakly
+    assert leading.std == pytest.approx(ahead.std, rel=0.15)
+
+
+def test_contact_damping_takes_the_wires_slope_into_account(short_shape, pantograph):
+    """Against a wire that rises ahead, a damper that forgot V dz/dx would push with c V dz/dx on average."""
+    damped = pantograph.replace(contact_damping=50.0)
+    plain, with_damper = (
+        cf.simulate(short_shape, [p], speed=200 / 3.6).contact_force_statistics()[0]
+        for p in (pantograph, damped)
+    )
+    assert with_damper.mean == pytest.approx(plain.mean, abs=1.0)
+    assert with_damper.std == pytest.approx(plain.std, rel=0.1)
+
+
+def test_nothing_moves_at_crawling_speed(short_shape, pantograph):
+    """At 10 km/h the wire follows its elasticity: the head's range is the static one's."""
+    line = short_shape.catenary
+    run = cf.simulate(
+        short_shape, [pantograph], speed=30 / 3.6, positions=[100.0], time=cf.TimeSettings(step=5e-3)
+    )
+    e = cf.elasticity(short_shape, force=118.0, spans=[3], points_per_span=30)
+    static = np.interp(e.position, [0, 1], [0, 0]) + short_shape.contact_wire_height(e.position) + e.uplift
+    assert run.contact_force_statistics()[0].contact_point_range == pytest.approx(np.ptp(static), rel=0.06)
+    assert line.spans_to_evaluate == (3,)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"speed": 300.0}, "looks like the wrong unit"),
+        ({"speed": 0.5}, "looks like the wrong unit"),
+        ({"speed": -10.0}, "must be above 0"),
+        ({"speed": np.nan}, "must be above 0"),
+        ({"positions": [1.0]}, "must start between"),
+        ({"positions": [130.0]}, "inside or behind the evaluated spans"),
+        ({"positions": [10.0, 20.0]}, "2 positions for 1 pantographs"),
+        ({"store_wire": 1e-4}, "must be at least the time step"),
+    ],
+)
+def test_bad_questions(short_shape, pantograph, change, said):
+    with pytest.raises(cf.InputError, match=said):
+        cf.simulate(short_shape, [pantograph], **({"speed": 70.0} | change))
+
+
+def test_several_pantographs_need_positions_that_fit(short_shape, pantograph):
+    pair = [pantograph, pantograph]
+    with pytest.raises(cf.InputError, match="2 pantographs need their positions"):
+        cf.simulate(short_shape, pair, speed=70.0)
+    with pytest.raises(cf.InputError, match="less than 1 m apart"):
+        cf.simulate(short_shape, pair, speed=70.0, positions=[20.0, 20.5])
+    with pytest.raises(cf.InputError, match="would end beyond the line"):
+        cf.simulate(short_shape, pair, speed=70.0, positions=[110.0, 10.0])
+    with pytest.raises(cf.InputError, match="pantographs is empty"):
+        cf.simulate(short_shape, [], speed=70.0)
+
+
+@pytest.mark.parametrize("step", [0.0, -1e-3, 0.05, np.nan])
+def test_bad_steps(step):
+    with pytest.raises(cf.InputError, match="time step"):
+        cf.TimeSettings(step=step)
+
+
+def warnings_of(shape, pantograph, speed=70.0, start=10.0, **time):
+    return run_warnings(shape, [pantograph], speed, np.array([start]), cf.TimeSettings(**time))
+
+
+def test_warnings_name_rule_and_both_numbers(reference, reference_shape, pantograph):
+    assert warnings_of(reference_shape, pantograph) == []
+    (fast,) = warnings_of(reference_shape, pantograph, speed=90.0)
+    assert "324 km/h is 0.74 of the contact wire's wave speed, 438 km/h; the rule is at most 0.7" in fast
+    assert "2 spans" not in fast
+    (late,) = warnings_of(reference_shape, pantograph, start=200.0)
+    assert "only 1 spans lie between" in late
+    assert any("time step 5 ms" in w for w in warnings_of(reference_shape, pantograph, step=5e-3))
+    light = reference.replace(contact_wire=reference.contact_wire.replace(tension=900.0))
+    assert "looks like kN" in cf.layout_warnings(light)[0]
+    bare = reference.replace(supports=(cf.Support(),) * 11)
+    assert "support 2 has no steady arm" in cf.layout_warnings(bare)[0]
+
+
+def test_warnings_travel_with_the_result(short_run):
+    assert any("spans lie between the start and the evaluated" in w for w in short_run.warnings)

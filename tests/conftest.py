@@ -1,0 +1,47 @@
+"""What many tests need: the reference layout, a short line, and runs that are computed once."""
+
+from pathlib import Path
+
+import pytest
+
+import catenary_fe as cf
+
+LAYOUTS = Path(__file__).parents[1] / "models" / "layouts"
+
+
+@pytest.fixture(scope="session")
+def reference_layout() -> Path:
+    return LAYOUTS / "en50318_2002.toml"
+
+
+@pytest.fixture(scope="session")
+def reference(reference_layout: Path) -> cf.Catenary:
+    return cf.load_catenary(reference_layout)
+
+
+@pytest.fixture(scope="session")
+def reference_shape(reference: cf.Catenary) -> cf.Shape:
+    return cf.find_form(reference)
+
+
+@pytest.fixture(scope="session")
+def pantograph() -> cf.Pantograph:
+    return cf.library.pantograph("EN 50318:2002")
+
+
+@pytest.fixture(scope="session")
+def short(reference: cf.Catenary) -> cf.Catenary:
+    """Four spans of the reference line, the third one evaluated."""
+    return reference.replace(
+        spans=reference.spans[:4], supports=reference.supports[:5], evaluated_spans=(3,)
+    )
+
+
+@pytest.fixture(scope="session")
+def short_shape(short: cf.Catenary) -> cf.Shape:
+    return cf.find_form(short)
+
+
+@pytest.fixture(scope="session")
+def short_run(short_shape: cf.Shape, pantograph: cf.Pantograph) -> cf.Run:
+    return cf.simulate(short_shape, [pantograph], speed=250 / 3.6, store_wire=0.02)

@@ -1,0 +1,38 @@
+"""Without damping, what the moving base puts in is what the system holds more."""
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.fe.drive import Trip, drive
+
+
+@pytest.fixture(scope="module")
+def undamped(short, pantograph):
+    catenary = short.replace(damping=cf.RayleighDamping())
+    free = pantograph.replace(stages=tuple(s.replace(damping=0.0) for s in pantograph.stages))
+    return cf.find_form(catenary), free
+
+
+def balance(shape, pantograph, step, radius):
+    """Largest difference between work put in and energy gained, and the work."""
+    time = cf.TimeSettings(step=step, tolerance=1e-6, spectral_radius=radius)
+    trip = Trip(300 / 3.6, np.array([10.0]), round(2 / step), time, energy_interval=0.01)
+    journey = drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
+    power = journey.driving_power
+    driven = np.concatenate([[0], np.cumsum((power[1:] + power[:-1]) / 2 * step)])[:: round(0.01 / step)]
+    gained = journey.energy - journey.energy[0]
+    base = journey.mass_heights[0][-1]
+    uplift = 120 * (base - base[0])  # counted as stored by the meter, as work by the field
+    return np.abs(driven - gained).max(), np.abs(driven).max() + np.abs(uplift).max()
+
+
+def test_energy_balance_of_an_undamped_run(undamped):
+    missing, work = balance(*undamped, step=5e-4, radius=1.0)
+    assert work > 20  # J: it is not a balance of nothing
+    assert missing < 0.005 * work
+
+
+def test_the_balance_sees_numerical_damping(undamped):
+    missing, work = balance(*undamped, step=1e-3, radius=0.0)
+    assert missing > 0.005 * work

@@ -1,0 +1,80 @@
+"""Filter and statistics against signals whose answers are known."""
+
+import numpy as np
+import pytest
+
+from catenary_fe.results import band_pass, force_statistics, low_pass, spectrum
+
+STEP = 1e-3
+T = np.arange(0, 20, STEP)
+
+
+def sine(frequency, amplitude=1.0):
+    return amplitude * np.sin(2 * np.pi * frequency * T)
+
+
+def late(signal):
+    return signal[10_000:]  # the filter's start is over
+
+
+@pytest.mark.parametrize(("kind", "gain"), [("causal", 1 / np.sqrt(2)), ("zero-phase", 0.5)])
+def test_gain_at_the_cut_off(kind, gain):
+    assert late(low_pass(sine(20), STEP, kind=kind)).max() == pytest.approx(gain, rel=2e-3)
+
+
+@pytest.mark.parametrize("frequency", [2.0, 10.0, 30.0, 40.0])
+def test_sixth_order_butterworth(frequency):
+    expected = 1 / np.sqrt(1 + (frequency / 20) ** 12)
+    # 5 %: the digital filter's frequency axis is warped towards half the sampling frequency
+    assert late(low_pass(sine(frequency), STEP)).max() == pytest.approx(expected, rel=0.05)
+
+
+def test_a_constant_passes_from_the_first_sample_on():
+    assert low_pass(np.full(500, 120.0), STEP) == pytest.approx(120.0)
+
+
+def test_causal_filter_delays_and_zero_phase_does_not():
+    signal = np.exp(-(((T - 10) / 0.05) ** 2))
+    assert T[low_pass(signal, STEP).argmax()] == pytest.approx(10.03, abs=0.006)
+    assert T[low_pass(signal, STEP, kind="zero-phase").argmax()] == pytest.approx(10.0, abs=2e-3)
+
+
+def test_bands_split_the_variance():
+    signal = 120 + sine(2, 20) + sine(12, 10)
+    inside = T > 10
+    s = force_statistics(name="x", force=signal, height=sine(1, 0.02), inside=inside, step=STEP)
+    assert s.mean == pytest.approx(120, abs=0.01)
+    assert s.std_0_5 == pytest.approx(20 / np.sqrt(2), rel=0.01)
+    assert s.std_5_20 == pytest.approx(10 / np.sqrt(2), rel=0.01)
+    assert s.std == pytest.approx(np.hypot(20, 10) / np.sqrt(2), rel=0.01)
+    assert s.statistical_max - s.statistical_min == pytest.approx(6 * s.std)
+    assert s.contact_loss == 0
+    assert s.contact_point_range == pytest.approx(0.04, rel=1e-3)
+
+
+def test_contact_loss_is_the_share_of_time_without_force():
+    signal = np.where((T % 1) < 0.1, 0.0, 100.0)
+    s = force_statistics(name="x", force=signal, height=T, inside=T > 10, step=STEP)
+    assert s.contact_loss == pytest.approx(0.1, abs=1e-3)
+
+
+def test_only_the_window_counts():
+    signal = np.where(T < 10, 500.0, 100.0)
+    s = force_statistics(name="x", force=signal, height=T, inside=T > 15, step=STEP)
+    assert (s.max, s.min) == (pytest.approx(100, abs=1e-3), pytest.approx(100, abs=1e-3))
+
+
+def test_cut_off_above_half_the_sampling_rate_is_refused():
+    with pytest.raises(ValueError, match="must lie below half"):
+        low_pass(T, 0.05)
+
+
+def test_band_pass_keeps_the_band():
+    signal = sine(1) + sine(10) + sine(60)
+    assert late(band_pass(signal, STEP, 5, 20)).max() == pytest.approx(1, rel=0.02)
+
+
+def test_spectrum_finds_the_tone():
+    frequency, amplitude = spectrum(100 + sine(7, 3.0), STEP)
+    assert frequency[amplitude.argmax()] == pytest.approx(7, abs=0.06)
+    assert amplitude.max() == pytest.approx(3, rel=0.01)

@@ -1,0 +1,141 @@
+"""Layout and pantograph files: what is written is what is built; what is wrong is said at once."""
+
+import json
+
+import jsonschema
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.system import layout_schema, pantograph_schema
+from catenary_fe.system.files import LARGEST_FILE
+
+
+def faults(path):
+    with pytest.raises(cf.InputError) as caught:
+        cf.load_catenary(path)
+    for line in caught.value.problems:
+        assert line.startswith(str(path))
+    return [line.removeprefix(f"{path}: ") for line in caught.value.problems]
+
+
+@pytest.fixture
+def edited(reference_layout, tmp_path):
+    def edit(*changes):
+        text = reference_layout.read_text()
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new, 1)
+        path = tmp_path / "layout.toml"
+        path.write_text(text)
+        return path
+
+    return edit
+
+
+def test_reference_layout(reference):
+    assert reference.length == 600
+    assert len(reference.droppers) == 90
+    assert reference.dropper_positions[9] == 65
+    assert reference.contact_wire.mass_per_length == 1.35  # filled in from the library
+    assert reference.spans_to_evaluate == (5, 6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("tension = 20e3", "tension = -20e3", "contact_wire.tension = -20000.0: must be greater than 0"),
+        ("tension = 20e3", 'tension = "20e3"', "contact_wire.tension = '20e3': must be number"),
+        ("tension = 20e3", "", "contact_wire.tension is missing; add it: [N]"),
+        ("mass = 0.3", "mas = 0.3", "unknown key support.steady_arm.mas; did you mean 'mass'?"),
+        ("count = 10", "count = 0", "span 1: count = 0: must be at least 1"),
+        ("length = 60.0", "length = 50.0", "span 1: dropper 9 at 55 m lies outside the 50 m span"),
+        ("10.5, 17.0", "17.0, 10.5", "span 1: dropper 3 at 10.5 m does not come after"),
+        ("[5.0,", '["five",', "span 1: droppers 1: 'five' is neither a position in metres nor a table"),
+        (
+            'library = "EN 50318:2002 contact wire"',
+            'library = "EN 50318:2002 contact wir"',
+            "contact_wire: no wire 'EN 50318:2002 contact wir' in the library; near names:",
+        ),
+        ("evaluated_spans = [5, 6]", "evaluated_spans = [5, 11]", "evaluated_spans names span 11"),
+        ("[damping]", "[[damping]]", "damping = [{'beta': 0.0001}]: must be a table"),
+        ("count = 10", "count = 10.5", "span 1: count = 10.5: must be integer"),
+    ],
+)
+def test_a_fault_in_a_file(edited, old, new, said):
+    (line,) = faults(edited((old, new)))
+    assert line.startswith(said)
+
+
+def test_several_faults_of_a_file_come_together(edited):
+    found = faults(
+        edited(("tension = 20e3", "tension = 0"), ("beta = 1e-4", "beta = -1"), ("length = 60.0", "length = 1.0"))
+    )
+    assert len(found) == 3
+
+
+def test_files_that_are_not_layouts(tmp_path):
+    path = tmp_path / "a.toml"
+    assert faults(path)[0].startswith("no such layout file")
+    path.write_text("name = 'x' name = 'y'")
+    assert faults(path)[0].startswith("not a TOML file: ")
+    path.write_text("a = 1\na = 2")
+    assert faults(path)[0].startswith("not a TOML file: ")
+    path.write_bytes(b"name = '\xff'")
+    assert faults(path)[0].startswith("not a text in UTF-8")
+    path.write_text("a = " + "[" * 5000 + "]" * 5000)
+    assert faults(path)[0].startswith("not a TOML file: ")
+    with path.open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    assert faults(path)[0].startswith("larger than")
+    assert faults(tmp_path)[0].startswith("cannot be read")
+
+
+def test_droppers_with_values_of_their_own(edited):
+    path = edited(
+        ("[5.0, 10.5,", "[5.0, { position = 10.5, stiffness = 2e5, height_offset = 0.01 },"),
+        ("count = 10", "count = 2"),
+        ("evaluated_spans = [5, 6]", ""),
+    )
+    catenary = cf.load_catenary(path)
+    assert [d.stiffness for d in catenary.droppers[:3]] == [1e5, 2e5, 1e5]
+    assert catenary.design_heights[1] == pytest.approx(5.31)
+
+
+def test_mistuned_spans_and_supports(edited):
+    path = edited(
+        ("[[span]]", '[[supports]]\nat = 2\nsystem_height = 1.4\n\n[[span]]\nlength = 50.0\ndroppers = [25]\n[[span]]'),
+    )
+    catenary = cf.load_catenary(path)
+    assert len(catenary.spans) == 11
+    assert catenary.support_positions[1] == 50
+    assert catenary.messenger_support_heights[:3] == pytest.approx([6.5, 6.7, 6.5])
+    assert catenary.supports[1].steady_arm == catenary.supports[2].steady_arm
+
+
+def test_a_support_that_is_not_there(edited):
+    (line,) = faults(edited(("[[span]]", "[[supports]]\nat = 12\n[[span]]")))
+    assert line == "supports: at = 12: the line has supports 1 to 11"
+
+
+def test_pantograph_file(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('name = "mine"\nuplift_force = 100\nstages = [{ mass = 10, stiffness = 50 }]')
+    assert cf.load_pantograph(path).uplift_force == 100
+    path.write_text("uplift_force = 100\nstages = [{ mas = 10, stiffness = 50 }]")
+    with pytest.raises(cf.InputError, match="did you mean 'mass'") as caught:
+        cf.load_pantograph(path)
+    assert len(caught.value.problems) == 2
+
+
+def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
+    import tomllib
+
+    schema = layout_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    for path in sorted(reference_layout.parent.glob("*.toml")):
+        jsonschema.validate(tomllib.loads(path.read_text()), schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"name": "x", "tensoin": 1}, schema)
+    text = json.dumps(pantograph_schema())
+    assert "EN 50367 AC" in text
+    assert "[N] constant force on the lowest mass" in text
