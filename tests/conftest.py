@@ -32,9 +32,7 @@ def pantograph() -> cf.Pantograph:
 @pytest.fixture(scope="session")
 def short(reference: cf.Catenary) -> cf.Catenary:
     """Four spans of the reference line, the third one evaluated."""
-    return reference.replace(
-        spans=reference.spans[:4], supports=reference.supports[:5], evaluated_spans=(3,)
-    )
+    return reference.replace(spans=reference.spans[:4], supports=reference.supports[:5], evaluated_spans=(3,))
 
 
 @pytest.fixture(scope="session")

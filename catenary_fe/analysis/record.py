@@ -52,6 +52,7 @@ def make_run(
             "m",
             "height of the masses",
         ),
+        "uplift_force": _labelled(("pantograph",), uplifts, "N", "constant force on the lowest mass"),
         "dropper_force": _labelled(("dropper", "time"), journey.dropper_force, "N", "dropper tension"),
         "support_uplift": _labelled(
             ("support", "time"),
@@ -76,7 +77,7 @@ def make_run(
         coordinates["static_contact_wire_height"] = _labelled(
             ("x",), shape.contact_wire_z, "m", "height of the contact wire before the run"
         )
-    attributes = _provenance(shape, pantographs, uplifts, speed, time)
+    attributes = _provenance(shape, pantographs, speed, time)
     attributes["warnings"] = json.dumps(list(warnings))
     return Run(xr.Dataset(variables, coordinates, attributes))
 
@@ -103,7 +104,7 @@ def _unique(names: Sequence[str]) -> list[str]:
 
 
 def _provenance(
-    shape: Shape, pantographs: Sequence[Pantograph], uplifts: Floats, speed: float, time: TimeSettings
+    shape: Shape, pantographs: Sequence[Pantograph], speed: float, time: TimeSettings
 ) -> dict[str, Any]:
     catenary = shape.catenary.model_dump_json()
     records = json.dumps([p.model_dump(mode="json") for p in pantographs])
@@ -115,8 +116,7 @@ def _provenance(
         "source": shape.catenary.source,
         "method": "nonlinear",
         "speed": speed,
-        "uplift_forces": uplifts,
-        "evaluated_spans": np.array(shape.catenary.spans_to_evaluate, dtype=np.int32),
+        "evaluated_spans": json.dumps(shape.catenary.spans_to_evaluate),
         "catenary": catenary,
         "pantographs": records,
         "settings": settings,

@@ -96,8 +96,9 @@ def add_pantograph(model: Track, pantograph: Pantograph, uplift: float, function
 
 
 def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
-    # the head's velocity is seen from the wire's material point; offset[1] holds what the slope adds
-    push = one_sided(displacement[1], velocity[1] - offset[1], stiffness[1], damping[1])
+    # the head's velocity is seen from the wire's material point; damping[0], of no use in the plane, holds
+    # what the wire's inclination adds (Exudyn takes the offset, which would be the place, off the displacement)
+    push = one_sided(displacement[1], velocity[1] - damping[0], stiffness[1], damping[1])
     return [0.0, push, 0.0]
 
 
@@ -136,7 +137,8 @@ class MovingContact:
             self._mbs.SetMarkerParameter(items.wire_marker, "localPosition", [local, 0, 0])
             if items.pantograph.contact_damping:
                 climb = speed * self.inclination(i)
-                self._mbs.SetObjectParameter(items.connector, "offset", [0, climb, 0])
+                damping = [climb, items.pantograph.contact_damping, 0]
+                self._mbs.SetObjectParameter(items.connector, "damping", damping)
         if changed:
             self._mbs.AssembleLTGLists()
 

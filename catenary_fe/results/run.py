@@ -27,8 +27,8 @@ FORMAT = "catenary_fe run 1"
 class Run:
     """Histories of a run, as an xarray Dataset with units, and what they came from.
 
-    data : variables position, contact_force, wire_height, mass_height (all by pantograph), dropper_force,
-        support_uplift, and contact_wire_height where the whole wire was stored; each has ``units`` and
+    data : variables position, contact_force, wire_height, mass_height, uplift_force (all by pantograph),
+        dropper_force, support_uplift, and contact_wire_height where the whole wire was stored; each has ``units`` and
         ``long_name``. Attributes hold the inputs, their hash, versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
@@ -59,7 +59,7 @@ class Run:
     @property
     def evaluated_spans(self) -> tuple[int, ...]:
         """Numbers of the spans (from 1) that statistics are taken over."""
-        return tuple(int(n) for n in np.atleast_1d(self.data.attrs["evaluated_spans"]))
+        return tuple(json.loads(self.data.attrs["evaluated_spans"]))
 
     @property
     def warnings(self) -> tuple[str, ...]:

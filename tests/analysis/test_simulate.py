@@ -74,14 +74,12 @@ def test_a_mean_force_is_reached(short_shape):
     run = cf.simulate(short_shape, [wanted], speed=250 / 3.6)
     target = 0.00097 * 250**2 + 70
     assert run.contact_force_statistics()[0].mean == pytest.approx(target, abs=0.1)
-    uplift = float(run.data.attrs["uplift_forces"])
+    uplift = float(run.data["uplift_force"].values[0])
     assert uplift > target + 2  # the base spring of 160 N/m is held down
 
 
 def test_two_pantographs(reference, pantograph):
-    line = reference.replace(
-        spans=reference.spans[:6], supports=reference.supports[:7], evaluated_spans=(3,)
-    )
+    line = reference.replace(spans=reference.spans[:6], supports=reference.supports[:7], evaluated_spans=(3,))
     run = cf.simulate(cf.find_form(line), [pantograph, pantograph], speed=250 / 3.6, positions=[60.0, 10.0])
     leading, trailing = run.contact_force_statistics()
     assert (leading.pantograph, trailing.pantograph) == ("EN 50318:2002 (1)", "EN 50318:2002 (2)")
@@ -94,26 +92,27 @@ def test_two_pantographs(reference, pantograph):
 
 
 def test_contact_damping_takes_the_wires_slope_into_account(short_shape, pantograph):
-    """Against a wire that rises ahead, a damper that forgot V dz/dx would push with c V dz/dx on average."""
+    """The damper sees the rate of penetration: c times it, on top of the spring, is the recorded force."""
     damped = pantograph.replace(contact_damping=50.0)
-    plain, with_damper = (
-        cf.simulate(short_shape, [p], speed=200 / 3.6).contact_force_statistics()[0]
-        for p in (pantograph, damped)
-    )
-    assert with_damper.mean == pytest.approx(plain.mean, abs=1.0)
-    assert with_damper.std == pytest.approx(plain.std, rel=0.1)
+    run = cf.simulate(short_shape, [damped], speed=200 / 3.6)
+    depth = run.data["mass_height"].values[0, 0] - run.data["wire_height"].values[0]
+    beyond_spring = run.data["contact_force"].values[0] - 50e3 * np.maximum(depth, 0)
+    rate = np.gradient(depth, run.step)
+    inside = run.window(0)
+    # a third: the inclination is taken at the start of a step, a lag of 1 ms where the wire kinks; without the
+    # inclination it is 1.6 times, with its sign turned 3 times
+    assert np.std((beyond_spring - 50.0 * rate)[inside]) < 0.4 * np.std(50.0 * rate[inside])
 
 
-def test_nothing_moves_at_crawling_speed(short_shape, pantograph):
-    """At 10 km/h the wire follows its elasticity: the head's range is the static one's."""
-    line = short_shape.catenary
-    run = cf.simulate(
-        short_shape, [pantograph], speed=30 / 3.6, positions=[100.0], time=cf.TimeSettings(step=5e-3)
-    )
-    e = cf.elasticity(short_shape, force=118.0, spans=[3], points_per_span=30)
-    static = np.interp(e.position, [0, 1], [0, 0]) + short_shape.contact_wire_height(e.position) + e.uplift
-    assert run.contact_force_statistics()[0].contact_point_range == pytest.approx(np.ptp(static), rel=0.06)
-    assert line.spans_to_evaluate == (3,)
+def test_at_low_speed_the_wire_follows_its_elasticity(short_shape, pantograph):
+    run = cf.simulate(short_shape, [pantograph], speed=20 / 3.6, time=cf.TimeSettings(step=2.5e-3))
+    inside = run.window(0)
+    x, height = (run.data[name].values[0][inside] for name in ("position", "wire_height"))
+    mean = run.contact_force_statistics()[0].mean
+    e = cf.elasticity(short_shape, force=mean, spans=[3], points_per_span=40)
+    static = short_shape.contact_wire_height(e.position) + e.uplift
+    # 4 mm of 57 mm: the passing of droppers still shakes the head by 10 N
+    assert np.interp(e.position, x, height) == pytest.approx(static, abs=4e-3)
 
 
 @pytest.mark.parametrize(
@@ -170,5 +169,7 @@ def test_warnings_name_rule_and_both_numbers(reference, reference_shape, pantogr
     assert "support 2 has no steady arm" in cf.layout_warnings(bare)[0]
 
 
-def test_warnings_travel_with_the_result(short_run):
-    assert any("spans lie between the start and the evaluated" in w for w in short_run.warnings)
+def test_warnings_travel_with_the_result(short_shape, pantograph):
+    run = cf.simulate(short_shape, [pantograph], speed=70.0, positions=[65.0])
+    assert any("spans lie between the start and the evaluated" in w for w in run.warnings)
+    assert run.summary()["warnings"] == list(run.warnings)

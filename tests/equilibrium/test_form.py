@@ -29,7 +29,9 @@ def test_steady_arm_preload(reference_shape):
 
 def test_a_false_tension_would_be_seen(reference, reference_shape):
     wire = reference.contact_wire
-    twin = cf.find_form(reference.replace(contact_wire=wire.replace(mass_per_length=1.01 * wire.mass_per_length)))
+    twin = cf.find_form(
+        reference.replace(contact_wire=wire.replace(mass_per_length=1.01 * wire.mass_per_length))
+    )
     assert twin.dropper_forces[40] != pytest.approx(reference_shape.dropper_forces[40], rel=5e-3)
     messenger = reference.messenger_wire
     twin = cf.find_form(reference.replace(messenger_wire=messenger.replace(tension=1.01 * messenger.tension)))
@@ -121,7 +123,9 @@ def test_weights_of_clamps_and_droppers_are_carried(reference):
 
 
 def test_an_arm_that_does_not_hold_lets_the_wire_sag(reference):
-    free = cf.Support(messenger_stiffness=5e5, steady_arm=cf.SteadyArm(stiffness=0.0, holds_design_height=False))
+    free = cf.Support(
+        messenger_stiffness=5e5, steady_arm=cf.SteadyArm(stiffness=0.0, holds_design_height=False)
+    )
     shape = cf.find_form(reference.replace(supports=(free,) * 11))
     sag = shape.contact_wire_height(300.0) - 5.3
     # 8 mm there and 102 N in the outer droppers, from a first independent trial of this case

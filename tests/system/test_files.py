@@ -68,7 +68,9 @@ def test_a_fault_in_a_file(edited, old, new, said):
 
 def test_several_faults_of_a_file_come_together(edited):
     found = faults(
-        edited(("tension = 20e3", "tension = 0"), ("beta = 1e-4", "beta = -1"), ("length = 60.0", "length = 1.0"))
+        edited(
+            ("tension = 20e3", "tension = 0"), ("beta = 1e-4", "beta = -1"), ("length = 60.0", "length = 1.0")
+        )
     )
     assert len(found) == 3
 
@@ -103,7 +105,10 @@ def test_droppers_with_values_of_their_own(edited):
 
 def test_mistuned_spans_and_supports(edited):
     path = edited(
-        ("[[span]]", '[[supports]]\nat = 2\nsystem_height = 1.4\n\n[[span]]\nlength = 50.0\ndroppers = [25]\n[[span]]'),
+        (
+            "[[span]]",
+            "[[supports]]\nat = 2\nsystem_height = 1.4\n\n[[span]]\nlength = 50.0\ndroppers = [25]\n[[span]]",
+        ),
     )
     catenary = cf.load_catenary(path)
     assert len(catenary.spans) == 11

@@ -75,7 +75,9 @@ def test_a_dropper_longer_than_the_system_height_is_refused(reference):
     span = reference.spans[0]
     long = span.replace(droppers=(*span.droppers[:-1], span.droppers[-1].replace(length=1.5)))
     (line,) = problems(reference.replace, spans=(*reference.spans[:-1], long))
-    assert line.startswith("span 10: dropper 9 with a length of 1.5 m is longer than the system height allows")
+    assert line.startswith(
+        "span 10: dropper 9 with a length of 1.5 m is longer than the system height allows"
+    )
 
 
 def test_counts_of_spans_and_supports_must_fit(reference):
@@ -121,7 +123,10 @@ def test_regular_spans_equal_the_reference_layout(reference):
         ({"stages": [{"mass": 0.0, "stiffness": 1.0}], "uplift_force": 1.0}, "stages 1: mass = 0.0: must be"),
         ({"stages": [{"stiffness": 1.0}], "uplift_force": 1.0}, "stages 1: mass is missing"),
         ({"stages": [{"mass": 1.0, "stiffness": 1.0}]}, "uplift_force and mean_force: give exactly one"),
-        ({"stages": [{"mass": 1.0, "stiffness": 1.0}], "mean_force": "EN 5"}, "mean_force: 'EN 5' is neither"),
+        (
+            {"stages": [{"mass": 1.0, "stiffness": 1.0}], "mean_force": "EN 5"},
+            "mean_force: 'EN 5' is neither",
+        ),
     ],
 )
 def test_pantographs_that_cannot_work(record, said):
