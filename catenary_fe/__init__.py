@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis import StaticState, elasticity, layout_warnings, simulate, solve_statics
+    from catenary_fe.analysis import StaticState, elasticity, simulate, solve_statics
     from catenary_fe.equilibrium import Shape, find_form, find_heights
     from catenary_fe.fe import MeshSettings, TimeSettings
     from catenary_fe.results import Elasticity, ForceStatistics, Run, load_run
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         SteadyArm,
         Support,
         Wire,
+        layout_warnings,
         library,
         load_catenary,
         load_pantograph,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 # loaded on first use: importing the package stays quick
 _ROOMS = {
-    "analysis": ("StaticState", "elasticity", "layout_warnings", "simulate", "solve_statics"),
+    "analysis": ("StaticState", "elasticity", "simulate", "solve_statics"),
     "equilibrium": ("Shape", "find_form", "find_heights"),
     "fe": ("MeshSettings", "TimeSettings"),
     "results": ("Elasticity", "ForceStatistics", "Run", "load_run"),
@@ -50,6 +51,7 @@ _ROOMS = {
         "SteadyArm",
         "Support",
         "Wire",
+        "layout_warnings",
         "library",
         "load_catenary",
         "load_pantograph",

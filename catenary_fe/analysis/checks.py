@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system import Catenary, InputError, Pantograph
+from catenary_fe.system import InputError, Pantograph
+from catenary_fe.system.plausibility import layout_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
 SLOWEST = 5 / 3.6  # [m/s]
@@ -32,27 +33,6 @@ def check_speed(speed: float) -> None:
             f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
             " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
         )
-
-
-def layout_warnings(catenary: Catenary) -> list[str]:
-    """What looks wrong in a layout, though no rule forbids it."""
-    found = []
-    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
-        if wire.tension < 1000:
-            found.append(
-                f"{name}.tension = {wire.tension:g} N is below 1000 N: looks like kN, the field takes N"
-            )
-        strain = wire.tension / wire.axial_stiffness
-        if strain > 0.01:
-            found.append(
-                f"{name}: the tension stretches the wire by {100 * strain:.2g} %, more than 1 %: EA ="
-                f" {wire.axial_stiffness:g} N looks too small"
-            )
-    for i, support in enumerate(catenary.supports[1:-1], start=2):
-        if support.steady_arm is None:
-            found.append(f"support {i} has no steady arm: the contact wire is free to sag there")
-            break
-    return found
 
 
 def run_warnings(

@@ -18,6 +18,7 @@ from catenary_fe.cli.terminal import (
     quiet_option,
 )
 from catenary_fe.system import Catenary, load_catenary
+from catenary_fe.system.plausibility import layout_warnings
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe info models/layouts/en50318_2002.toml -o info")
@@ -26,8 +27,6 @@ from catenary_fe.system import Catenary, load_catenary
 @json_option
 def info(layout: str, output: str | None, as_json: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
-    from catenary_fe.analysis.checks import layout_warnings
-
     catenary = load_catenary(layout)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
@@ -101,10 +100,11 @@ def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, qu
     with output_folder(output) as folder:
         shape = find_heights(catenary) if given_lengths else find_form(catenary)
         rows = [row.as_dict() for row in shape.dropper_schedule()]
-        result = {
+        result: dict[str, Any] = {
             "droppers": rows,
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
+            "warnings": layout_warnings(catenary),
         }
         if folder:
             from catenary_fe.views import plot_layout, plot_static_shape
@@ -129,6 +129,8 @@ def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, qu
             for row in rows
         ]
         print_table(f"{catenary.name}: dropper schedule", columns, table)
+    if not as_json:
+        print_warnings(result["warnings"])
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")
@@ -155,7 +157,12 @@ def static(
             {"position_m": float(x), "mm_per_N": 1e3 * float(e)}
             for x, e in zip(curve.position, curve.values, strict=True)
         ]
-        result = {"elasticity": rows, "non_uniformity": curve.non_uniformity, "force_N": curve.force}
+        result: dict[str, Any] = {
+            "elasticity": rows,
+            "non_uniformity": curve.non_uniformity,
+            "force_N": curve.force,
+            "warnings": layout_warnings(catenary),
+        }
         if folder:
             from catenary_fe.views import plot_elasticity, plot_static_shape
 
@@ -173,6 +180,8 @@ def static(
             ("position m", "elasticity mm/N"),
             table,
         )
+    if not as_json:
+        print_warnings(result["warnings"])
 
 
 def _span_numbers(text: str | None) -> list[int] | None:

@@ -126,3 +126,31 @@ def even_nodes(fixed: Sequence[float] | Floats, element: float) -> Floats:
         for a, b in pairwise(points)
     ]
     return np.append(np.concatenate(parts), points[-1])
+
+
+def graded_nodes(
+    fixed: Sequence[float] | Floats,
+    element: float,
+    *,
+    kinks: Sequence[float] | Floats,
+    finest: float,
+    growth: float = 2.0,
+) -> Floats:
+    """Positions [m] of nodes that crowd around kinks: supports, masses, springs and forces at rest.
+
+    fixed : [m] ends and whatever else needs a node
+    element : [m] largest length of an element
+    kinks : [m] where elements start with the length ``finest``
+    growth : ratio of neighbouring lengths
+    """
+    sizes = finest * growth ** np.arange(max(0, int(np.log(element / finest) / np.log(growth))) + 1)
+    around = np.concatenate([[0.0], np.cumsum(sizes)])
+    points = np.unique(np.concatenate([fixed, kinks]))
+    left, right = np.subtract.outer(kinks, around), np.add.outer(kinks, around)
+    # where two kinks are close, neither crowds beyond the middle between them
+    gaps = np.diff(np.asarray(kinks, dtype=float), prepend=-np.inf, append=np.inf) / 2
+    left = left[np.broadcast_to(around, left.shape) <= gaps[:-1, None]]
+    right = right[np.broadcast_to(around, right.shape) <= gaps[1:, None]]
+    inside = np.concatenate([left, right])
+    inside = inside[(inside > points[0]) & (inside < points[-1])]
+    return even_nodes(np.unique(np.round(np.concatenate([points, inside]), 9)), element)

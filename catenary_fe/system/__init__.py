@@ -5,6 +5,7 @@ from catenary_fe.system.catenary import Catenary, RayleighDamping, Span, SteadyA
 from catenary_fe.system.errors import CatenaryError, InputError, SolverError
 from catenary_fe.system.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.system.pantograph import AerodynamicForce, Pantograph, Stage, target_mean_force
+from catenary_fe.system.plausibility import layout_warnings
 from catenary_fe.system.wire import Dropper, Wire
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Support",
     "Wire",
     "layout_schema",
+    "layout_warnings",
     "library",
     "load_catenary",
     "load_pantograph",

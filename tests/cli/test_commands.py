@@ -1,0 +1,228 @@
+"""Commands as they are typed: what they print, write and return, and what bad input leads to."""
+
+import json
+import stat
+
+import pytest
+
+from catenary_fe.cli import main
+
+
+@pytest.fixture
+def layout(reference_layout, tmp_path):
+    """The reference layout with four spans."""
+    text = reference_layout.read_text().replace("count = 10", "count = 4")
+    path = tmp_path / "layout.toml"
+    path.write_text(text.replace("evaluated_spans = [5, 6]", "evaluated_spans = [3]"))
+    return str(path)
+
+
+def call(capsys, *arguments):
+    code = main([str(a) for a in arguments])
+    return code, *capsys.readouterr()
+
+
+def test_info(capsys, layout, tmp_path):
+    code, out, err = call(capsys, "info", layout, "--json", "-o", tmp_path / "out")
+    facts = json.loads(out)
+    assert (code, err) == (0, "")
+    assert facts["contact_wire"]["wave_speed_kmh"] == pytest.approx(438.18, abs=0.01)
+    assert facts["droppers"] == 36
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {"info.json", "layout.png"}
+    code, out, _ = call(capsys, "info", layout)
+    assert code == 0
+    assert "messenger wire: tension kN" in out
+
+
+def test_form(capsys, layout, tmp_path):
+    code, out, err = call(capsys, "form", layout, "--json", "-o", tmp_path / "out")
+    rows = json.loads(out)["droppers"]
+    assert (code, err, len(rows)) == (0, "", 36)
+    assert set(rows[0]) == {
+        "span", "position_m", "length_m", "installed_length_m", "force_N", "contact_wire_height_error_mm",
+    }  # fmt: skip
+    assert max(abs(row["contact_wire_height_error_mm"]) for row in rows) < 0.1
+    table = (tmp_path / "out" / "dropper_schedule.csv").read_text().splitlines()
+    assert len(table) == 37
+    code, out, _ = call(capsys, "form", layout)
+    assert "dropper schedule" in out
+
+
+def test_given_lengths(capsys, layout, tmp_path):
+    code, _, err = call(capsys, "form", layout, "--given-lengths")
+    assert code == 3
+    assert "span 1: dropper 1 at 5 m has no length" in err
+    rows = json.loads(call(capsys, "form", layout, "--json")[1])["droppers"]
+    spans = ""
+    for number in range(1, 5):
+        entries = ", ".join(
+            f"{{ position = {r['position_m']}, length = {r['length_m']} }}"
+            for r in rows
+            if r["span"] == number
+        )
+        spans += f"[[span]]\nlength = 60.0\ndroppers = [{entries}]\n"
+    text = open(layout).read()
+    path = tmp_path / "given.toml"
+    path.write_text(text[: text.index("[[span]]")] + spans)
+    code, out, _ = call(capsys, "form", path, "--given-lengths", "--json")
+    assert code == 0
+    assert max(abs(r["contact_wire_height_error_mm"]) for r in json.loads(out)["droppers"]) < 0.1
+
+
+def test_static(capsys, layout, tmp_path):
+    code, out, err = call(capsys, "static", layout, "--json", "--force", 150, "-o", tmp_path / "out")
+    result = json.loads(out)
+    assert (code, err, result["force_N"]) == (0, "", 150)
+    values = [row["mm_per_N"] for row in result["elasticity"]]
+    assert result["non_uniformity"] == pytest.approx(
+        (max(values) - min(values)) / (max(values) + min(values))
+    )
+    assert (tmp_path / "out" / "elasticity.png").stat().st_size > 10_000
+
+
+def test_run(capsys, layout, tmp_path):
+    out_dir = tmp_path / "out"
+    code, out, err = call(
+        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--speed-kmh", 250, "--json", "-o", out_dir
+    )
+    summary = json.loads(out)
+    assert (code, err) == (0, "")
+    assert summary["speed_kmh"] == 250
+    assert summary["pantographs"][0]["name"] == "EN 50318:2002"
+    assert {p.name for p in out_dir.iterdir()} == {
+        "run.nc", "summary.json", "dropper_schedule.csv", "layout.png", "static_shape.png",
+        "contact_force.png", "support_uplift.png", "dropper_forces.png",
+    }  # fmt: skip
+    written = json.loads((out_dir / "summary.json").read_text())
+    assert written == summary
+
+
+def test_run_prints_a_table(capsys, layout):
+    code, out, _ = call(
+        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--pantograph-at", "30", "10",
+        "--speed-kmh", 200, "--time-step-ms", 2, "--filter", "zero-phase",
+    )  # fmt: skip
+    assert code == 0
+    assert "EN 50318:2002 (2)" in out
+    assert "zero-phase 20 Hz filter" in out
+    assert "standard deviation (N)" in out
+
+
+PANTOGRAPH = ["--pantograph", "EN 50318:2002"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["info", "nowhere.toml"], 3, "nowhere.toml: no such layout file"),
+        (["run", "LAYOUT", "--pantograph", "DSA381", "--speed-kmh", "300"], 3, "near names: 'DSA380'"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "83333"], 3, "looks like the wrong unit"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "-10"], 3, "must be above 0"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "nan"], 3, "must be above 0"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "fast"], 2, "not a valid float"),
+        (["run", "LAYOUT", *PANTOGRAPH], 2, "Missing option '--speed-kmh'"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--time-step-ms", "0"], 3, "time step = 0.0 s"),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--element-m", "-1"], 3, "mesh: contact_wire"),
+        (
+            ["run", "LAYOUT", *PANTOGRAPH, "--pantograph-at", "110", "10", "--speed-kmh", "200"],
+            3,
+            "would end beyond the line",
+        ),
+        (["static", "LAYOUT", "--force", "0"], 3, "force = 0.0 N: must be above 0"),
+        (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
+        (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
+        (["frobnicate"], 2, "No such command"),
+        (["info"], 2, "Missing argument 'LAYOUT'"),
+    ],
+)
+def test_bad_input(capsys, layout, tmp_path, arguments, code, said):
+    target = tmp_path / "new" / "out"
+    words = [layout if a == "LAYOUT" else a for a in arguments]
+    if words[0] in ("run", "static"):
+        words += ["-o", target]
+    found, out, err = call(capsys, *words)
+    assert (found, out) == (code, "")
+    assert said in err
+    assert "Traceback" not in err
+    assert not target.parent.exists()
+
+
+def test_an_output_folder_that_cannot_be_made(capsys, layout, tmp_path):
+    blocker = tmp_path / "file"
+    blocker.write_text("here already")
+    code, out, err = call(capsys, "form", layout, "-o", blocker / "out")
+    assert (code, out) == (3, "")
+    assert "output folder" in err
+    assert "choose another folder" in err
+    assert blocker.read_text() == "here already"
+
+
+def test_other_files_in_the_output_folder_stay(capsys, layout, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "mine.txt").write_text("keep me")
+    assert call(capsys, "form", layout, "--quiet", "-o", tmp_path / "out")[0] == 0
+    assert (tmp_path / "out" / "mine.txt").read_text() == "keep me"
+    assert (tmp_path / "out" / "form.json").exists()
+    assert not [p for p in (tmp_path / "out").iterdir() if p.name.startswith(".part")]
+    assert stat.S_ISREG((tmp_path / "out" / "form.json").stat().st_mode)
+
+
+def test_several_faults_are_several_lines(capsys, tmp_path, reference_layout):
+    path = tmp_path / "bad.toml"
+    text = reference_layout.read_text()
+    path.write_text(text.replace("tension = 20e3", "tension = 0").replace("beta = 1e-4", "betta = 1e-4"))
+    code, _, err = call(capsys, "info", path)
+    lines = err.splitlines()
+    assert code == 3
+    assert len(lines) == 2
+    assert all(line.startswith(f"error: {path}: ") for line in lines)
+
+
+def test_schema(capsys):
+    code, out, _ = call(capsys, "schema", "layout")
+    assert code == 0
+    assert json.loads(out)["title"] == "catenary_fe layout"
+
+
+def test_help_names_all_commands(capsys):
+    code, out, _ = call(capsys, "--help")
+    assert code == 0
+    for name in ("info", "form", "static", "run", "validate", "schema", "Exit codes"):
+        assert name in out
+
+
+def test_a_static_solver_failure_is_exit_code_4(capsys, layout):
+    """A contact wire that hardly anything pulls."""
+    with open(layout) as file:
+        text = file.read()
+    with open(layout, "w") as file:
+        file.write(text.replace("tension = 20e3", "tension = 1"))
+    code, out, err = call(capsys, "form", layout)
+    assert (code, out) == (4, "")
+    assert err.startswith("error: form finding of the contact wire: no static equilibrium")
+    assert len(err.splitlines()) == 1
+
+
+def test_kilonewtons_are_warned_of(capsys, layout):
+    with open(layout) as file:
+        text = file.read()
+    with open(layout, "w") as file:
+        file.write(text.replace("tension = 20e3", "tension = 20"))
+    for command in ("info", "form"):
+        _, _, err = call(capsys, command, layout)
+        assert "warning: contact_wire.tension = 20 N is below 1000 N: looks like kN" in err
+
+
+def test_a_dynamic_solver_failure_is_exit_code_4(capsys, layout, tmp_path):
+    """A contact damper a thousand times too strong."""
+    path = tmp_path / "stiff.toml"
+    path.write_text(
+        "uplift_force = 100.0\ncontact_damping = 1e5\nstages = [{ mass = 7.0, stiffness = 50.0, damping = 90.0 }]"
+    )
+    out_dir = tmp_path / "out"
+    code, out, err = call(capsys, "run", layout, "--pantograph", path, "--speed-kmh", 250, "-o", out_dir)
+    assert (code, out) == (4, "")
+    assert "no convergence at t = 0.00" in err
+    assert "try a smaller time step" in err
+    assert len(err.splitlines()) == 1
+    assert not out_dir.exists()

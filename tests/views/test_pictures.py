@@ -1,0 +1,59 @@
+"""Pictures: drawn from data, labelled with units, without a screen."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import catenary_fe as cf
+from catenary_fe import views
+
+
+@pytest.fixture(scope="module")
+def drawings(short, short_shape, short_run):
+    return {
+        "layout": views.plot_layout(short),
+        "layout as hung": views.plot_layout(short, short_shape, spans=[2, 3]),
+        "layout to scale": views.plot_layout(short, short_shape, to_scale=True),
+        "static shape": short_shape.plot(),
+        "elasticity": cf.elasticity(short_shape, points_per_span=6).plot(),
+        "contact force": short_run.plot_contact_force(),
+        "support uplift": short_run.plot_support_uplift(),
+        "dropper forces": short_run.plot_dropper_forces(),
+    }
+
+
+def test_axes_have_labels_with_units(drawings):
+    for name, ax in drawings.items():
+        for label in (ax.get_xlabel(), ax.get_ylabel()):
+            assert label.endswith(("(m)", "(mm)", "(N)", "(s)", "(mm/N)")), (name, label)
+        assert ax.get_title(loc="left")
+
+
+def test_every_picture_can_be_saved(drawings, tmp_path):
+    for name, ax in drawings.items():
+        path = tmp_path / f"{name}.png"
+        ax.figure.savefig(path)
+        assert path.stat().st_size > 8_000
+
+
+def test_a_given_axes_is_drawn_on(short_run):
+    ax = Figure().subplots()
+    assert short_run.plot_contact_force(ax=ax) is ax
+
+
+def test_the_force_curve_is_the_filtered_force(drawings, short_run):
+    line = next(c for c in drawings["contact force"].lines if "0 to 20 Hz" in c.get_label())
+    assert line.get_ydata() == pytest.approx(short_run.filtered_contact_force()[0])
+
+
+def test_the_largest_uplift_is_named(drawings, short_run):
+    texts = [t.get_text() for t in drawings["support uplift"].get_legend().get_texts()]
+    largest = 1e3 * short_run.largest_support_uplift()
+    assert any(f"{largest:.1f} mm" in text for text in texts)
+
+
+def test_the_drawn_static_shape_touches_the_design_heights(drawings, short_shape):
+    curve = next(c for c in drawings["static shape"].lines if c.get_label() == "contact wire")
+    heights = np.interp(short_shape.catenary.dropper_positions, *curve.get_data())
+    third = short_shape.catenary.dropper_spans == 3
+    assert heights[third] == pytest.approx(0, abs=0.01)
