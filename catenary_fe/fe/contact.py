@@ -97,7 +97,7 @@ def add_pantograph(model: Track, pantograph: Pantograph, uplift: float, function
 
 def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
     # the head's velocity is seen from the wire's material point; damping[0], of no use in the plane, holds
-    # what the wire's inclination adds (Exudyn takes the offset, which would be the place, off the displacement)
+    # what the wire's inclination adds (the offset, which would be the place, is taken off the displacement)
     push = one_sided(displacement[1], velocity[1] - damping[0], stiffness[1], damping[1])
     return [0.0, push, 0.0]
 

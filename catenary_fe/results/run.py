@@ -27,9 +27,9 @@ FORMAT = "catenary_fe run 1"
 class Run:
     """Histories of a run, as an xarray Dataset with units, and what they came from.
 
-    data : variables position, contact_force, wire_height, mass_height, uplift_force (all by pantograph),
-        dropper_force, support_uplift, and contact_wire_height where the whole wire was stored; each has ``units`` and
-        ``long_name``. Attributes hold the inputs, their hash, versions and settings.
+    data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
+        dropper_force, support_uplift, and contact_wire_height where the whole wire was stored; each has
+        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 

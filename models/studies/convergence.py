@@ -3,7 +3,7 @@
 Question: which element lengths, time step, Newton tolerance and spectral radius leave the contact force of
 EN 50318:2002 at 300 km/h within 1 % of a much finer computation, at the least cost?
 
-Run it with ``python models/studies/convergence.py [FOLDER]``; it takes about ten minutes on one core and writes
+Run it with ``python models/studies/convergence.py [FOLDER]``; it takes ten minutes on one core and writes
 ``convergence.md`` and ``convergence.png``.
 """
 
@@ -43,6 +43,22 @@ CASES = {
 }
 
 
+HEADING = """# Mesh, time step and tolerance: what they do to the contact force
+
+EN 50318:2002 at 300 km/h, spans 5 and 6, causal 20 Hz filter; written by `models/studies/convergence.py`.
+The first row is the finest computation, against which the others are off. The last column is the real-time
+factor on one core of a machine with other work to do: compare it within the table only."""
+
+CONCLUSION = """![Deviation of the standard deviation](convergence.png)
+
+- Steps of 1 ms leave σ within 0.5 % of steps of 0.5 ms; 2 ms still within 1 %. Default: 1 ms.
+- Uniform elements of 2 m are too long (σ + 9 %): a tone of the passing elements enters the band. Elements
+  of 0.5 m at the clamps that grow to 1.3 m (contact wire) and 2 m (messenger wire) keep σ within 0.5 %.
+  Default: those.
+- A tolerance of 1e-3 moves the mean by more than 1 N; 1e-4 does not. Default: 1e-4.
+- The spectral radius does not matter below 20 Hz. Default: 0.9."""
+
+
 def run_case(mesh: cf.MeshSettings, time: cf.TimeSettings) -> dict[str, float]:
     """σ and its neighbours for one choice."""
     shape = cf.find_form(cf.load_catenary(LAYOUT), mesh)
@@ -74,7 +90,8 @@ def main(folder: Path) -> None:
             f"| {name} | {r['nodes']} | {r['std_N']:.2f} | {off:+.1f} | {r['mean_N']:.1f} | {r['max_N']:.1f}"
             f" | {r['min_N']:.1f} | {r['uplift_mm']:.1f} | {r['real_time']:.2f} |"
         )
-    (folder / "convergence.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    text = "\n".join([HEADING, "", *lines, "", CONCLUSION])
+    (folder / "convergence.md").write_text(text + "\n", encoding="utf-8")
     ax = new_axes(None, (9.0, 5.0))
     names = list(results)[1:]
     off = [100 * (results[n]["std_N"] / sigma - 1) for n in names]

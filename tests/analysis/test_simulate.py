@@ -1,4 +1,4 @@
-"""Runs: the reference model's accepted ranges, convergence, mean force, several pantographs, bad questions."""
+"""Runs: the reference model's accepted ranges, convergence, mean force, pantographs, bad questions."""
 
 import numpy as np
 import pytest
@@ -99,8 +99,8 @@ def test_contact_damping_takes_the_wires_slope_into_account(short_shape, pantogr
     beyond_spring = run.data["contact_force"].values[0] - 50e3 * np.maximum(depth, 0)
     rate = np.gradient(depth, run.step)
     inside = run.window(0)
-    # a third: the inclination is taken at the start of a step, a lag of 1 ms where the wire kinks; without the
-    # inclination it is 1.3 times, with its sign turned 2.6 times
+    # a third: the inclination is taken at the start of a step, a lag of 1 ms where the wire kinks; without
+    # the inclination it is 1.3 times, with its sign turned 2.6 times
     assert np.std((beyond_spring - 50.0 * rate)[inside]) < 0.4 * np.std(50.0 * rate[inside])
 
 

@@ -1,8 +1,8 @@
 """Where the time of the reference run goes, as ratios within one process.
 
-``python tests/benchmarks/run_cost.py [--seconds 3]`` runs EN 50318:2002 at 300 km/h at the default mesh and step
-and prints the real-time factor (simulated over elapsed time, one core) and the shares of its parts. Absolute
-times depend on the machine and what else it does; compare ratios of one run.
+``python tests/benchmarks/run_cost.py [--seconds 3]`` runs EN 50318:2002 at 300 km/h at the default mesh and
+step and prints the real-time factor (simulated over elapsed time, one core) and the shares of its parts.
+Absolute times depend on the machine and what else it does; compare ratios of one run.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ def test_a_false_tension_would_be_seen(reference, reference_shape):
 
 
 def test_messenger_sag_by_hand(reference, reference_shape):
-    """A string under weight and droppers, less what EI rounds off: λ F/2T at the kinks of support and middle."""
+    """A string under weight and droppers, less what EI rounds off at kinks: λ F/2T at support and middle."""
     wire = reference.messenger_wire
     forces = reference_shape.dropper_forces[36:45]
     x = np.array([d.position for d in reference.spans[4].droppers])
