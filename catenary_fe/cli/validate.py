@@ -28,7 +28,8 @@ def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quie
     with progress_bar("validation", not quiet) as progress:
         checks = suite.run_cases(list(cases) or None, quick=quick, jobs=jobs, progress=progress)
     if not cases and not quick:
-        suite.write_report(checks, Path("validation"))
+        assert suite.__file__
+        suite.write_report(checks, Path(suite.__file__).parent)
     rows = [asdict(check) for check in checks]
     if as_json:
         keys = ("case", "quantity", "computed", "reference", "error", "tolerance", "source", "passed")

@@ -139,6 +139,10 @@ def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
     jsonschema.Draft202012Validator.check_schema(schema)
     for path in sorted(reference_layout.parent.glob("*.toml")):
         jsonschema.validate(tomllib.loads(path.read_text()), schema)
+    for name, current in (("layout", schema), ("pantograph", pantograph_schema())):
+        path = reference_layout.parents[1] / "schemas" / f"{name}.schema.json"
+        committed = json.loads(path.read_text())
+        assert committed == current, f"run: catenary-fe schema {name} > models/schemas/{name}.schema.json"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({"name": "x", "tensoin": 1}, schema)
     text = json.dumps(pantograph_schema())
