@@ -138,6 +138,11 @@ def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Pla
         raise InputError("two pantographs start less than 1 m apart; give positions that differ")
     first, last = min(catenary.spans_to_evaluate) - 1, max(catenary.spans_to_evaluate)
     distance = length - margin - start.max()
+    if first == 0:
+        raise InputError(
+            "evaluated_spans: a run starts in the line's first span, which therefore cannot be evaluated; add"
+            " spans (three are the least) or name later ones in evaluated_spans"
+        )
     if start.max() > supports[first]:
         raise InputError(
             f"a pantograph starts at {start.max():g} m, inside or behind the evaluated spans, which begin at"

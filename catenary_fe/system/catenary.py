@@ -126,7 +126,7 @@ class Catenary(Parameters):
     damping: RayleighDamping = RayleighDamping()
     """of the wires"""
     evaluated_spans: tuple[int, ...] | None = None
-    """numbers of the spans (from 1) over which statistics are taken; unset: the middle third, at least two"""
+    """numbers of the spans (from 1) over which statistics are taken; unset: the middle third"""
 
     @model_validator(mode="after")
     def _counts(self) -> Self:
@@ -232,7 +232,7 @@ class Catenary(Parameters):
         if self.evaluated_spans:
             return tuple(sorted(set(self.evaluated_spans)))
         n = len(self.spans)
-        count = min(n, max(2, n // 3))
+        count = min(max(2, n // 3), max(1, n - 2))  # a run starts in the first span and ends in the last
         first = (n - count) // 2 + 1
         return tuple(range(first, first + count))
 

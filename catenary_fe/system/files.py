@@ -115,7 +115,7 @@ class LayoutFile(Parameters):
     damping: RayleighDamping = RayleighDamping()
     """of the wires"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
-    """numbers of the spans (from 1) for the statistics; unset: the middle third, at least two"""
+    """numbers of the spans (from 1) for the statistics; unset: the middle third"""
 
     def catenary(self) -> Catenary:
         """The catenary that the file describes. Raises InputError."""

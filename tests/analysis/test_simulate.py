@@ -145,6 +145,37 @@ def test_several_pantographs_need_positions_that_fit(short_shape, pantograph):
         cf.simulate(short_shape, [], speed=70.0)
 
 
+@pytest.mark.parametrize(
+    ("spans", "expected"), [(1, (1,)), (3, (2,)), (4, (2, 3)), (10, (4, 5, 6)), (20, (8, 9, 10, 11, 12, 13))]
+)
+def test_spans_that_are_evaluated_unless_named(reference, spans, expected):
+    line = reference.replace(
+        spans=reference.spans[:1] * spans, supports=reference.supports[:1] * (spans + 1), evaluated_spans=None
+    )
+    assert line.spans_to_evaluate == expected
+
+
+def test_a_line_of_two_spans_is_too_short_for_a_run(reference, pantograph):
+    line = reference.replace(spans=reference.spans[:2], supports=reference.supports[:3], evaluated_spans=None)
+    with pytest.raises(cf.InputError, match="three are the least"):
+        cf.simulate(cf.find_form(line), [pantograph], speed=70.0)
+
+
+def test_a_line_without_droppers(reference, pantograph):
+    """Two wires that do not know of each other: the contact wire's elasticity is a string's, F x (L-x)/(T L)."""
+    span = cf.Span(length=60.0, droppers=())
+    arm = cf.SteadyArm(stiffness=1e7, mass=0.3)
+    line = reference.replace(
+        spans=(span,) * 3, supports=(cf.Support(steady_arm=arm),) * 4, evaluated_spans=(2,)
+    )
+    shape = cf.find_form(line)
+    middle = cf.elasticity(shape, positions=[90.0]).values[0]
+    # 1 %: the stiff arm turns with the wire, whose EI and neighbours stiffen it a little
+    assert middle == pytest.approx(60 / 4 / line.contact_wire.tension, rel=0.01)
+    run = cf.simulate(shape, [pantograph], speed=30.0)
+    assert np.isfinite(run.contact_force_statistics()[0].mean)
+
+
 @pytest.mark.parametrize("step", [0.0, -1e-3, 0.05, np.nan])
 def test_bad_steps(step):
     with pytest.raises(cf.InputError, match="time step"):
