@@ -16,6 +16,7 @@ from catenary_fe.cli.terminal import (
     print_warnings,
     progress_bar,
     quiet_option,
+    spans_option,
 )
 from catenary_fe.system import Catenary, load_catenary
 from catenary_fe.system.plausibility import layout_warnings
@@ -136,23 +137,27 @@ def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, qu
 @click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")
 @layout_argument
 @click.option("--force", "force", type=float, default=100.0, show_default=True, help="Upward force in N.")
-@click.option("--spans", help="Spans to evaluate, e.g. 5,6; unset: the layout's.")
+@spans_option
 @output_option
 @json_option
 @quiet_option
 def static(
-    layout: str, force: float, spans: str | None, output: str | None, as_json: bool, quiet: bool
+    layout: str,
+    force: float,
+    spans: list[int] | None,
+    output: str | None,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
     from catenary_fe.analysis import elasticity
     from catenary_fe.equilibrium import find_form
 
     catenary = load_catenary(layout)
-    numbers = _span_numbers(spans)
     with output_folder(output) as folder:
         shape = find_form(catenary)
         with progress_bar("elasticity", not quiet) as progress:
-            curve = elasticity(shape, force=force, spans=numbers, progress=progress)
+            curve = elasticity(shape, force=force, spans=spans, progress=progress)
         rows = [
             {"position_m": float(x), "mm_per_N": 1e3 * float(e)}
             for x, e in zip(curve.position, curve.values, strict=True)
@@ -182,12 +187,3 @@ def static(
         )
     if not as_json:
         print_warnings(result["warnings"])
-
-
-def _span_numbers(text: str | None) -> list[int] | None:
-    if text is None:
-        return None
-    try:
-        return [int(part) for part in text.split(",")]
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is not a list of span numbers such as 5,6") from None

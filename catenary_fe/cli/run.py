@@ -16,6 +16,7 @@ from catenary_fe.cli.terminal import (
     print_warnings,
     progress_bar,
     quiet_option,
+    spans_option,
 )
 from catenary_fe.system import InputError, Pantograph, load_catenary, load_pantograph
 
@@ -68,6 +69,7 @@ def _is_number(text: str) -> bool:
     default="causal",
     show_default=True,
 )
+@spans_option
 @click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
 @output_option
 @json_option
@@ -80,6 +82,7 @@ def run(
     time_step_ms: float,
     element_m: float | None,
     filter_kind: Any,
+    spans: list[int] | None,
     store_wire_ms: float | None,
     output: str | None,
     as_json: bool,
@@ -91,6 +94,8 @@ def run(
     from catenary_fe.fe import MeshSettings, TimeSettings
 
     catenary = load_catenary(layout)
+    if spans:
+        catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)

@@ -18,6 +18,20 @@ output_option = click.option(
 )
 
 
+def _span_numbers(context: click.Context, parameter: click.Parameter, text: str | None) -> list[int] | None:
+    if text is None:
+        return None
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is not a list of span numbers such as 5,6") from None
+
+
+spans_option = click.option(
+    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
+)
+
+
 def print_json(value: Any) -> None:
     """One JSON document on standard output; not-a-number never appears in it."""
     click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))

@@ -101,11 +101,11 @@ def test_run(capsys, layout, tmp_path):
 def test_run_prints_a_table(capsys, layout):
     code, out, _ = call(
         capsys, "run", layout, "--pantograph", "EN 50318:2002", "--pantograph-at", "30", "10",
-        "--speed-kmh", 200, "--time-step-ms", 2, "--filter", "zero-phase",
+        "--speed-kmh", 200, "--time-step-ms", 2, "--filter", "zero-phase", "--spans", "2,3",
     )  # fmt: skip
     assert code == 0
     assert "EN 50318:2002 (2)" in out
-    assert "zero-phase 20 Hz filter" in out
+    assert "spans 2, 3, zero-phase 20 Hz filter" in " ".join(out.split())
     assert "standard deviation (N)" in out
 
 
