@@ -26,6 +26,7 @@ from catenary_fe.fe.wire import (
     hold,
 )
 from catenary_fe.fe.wire_problem import Function, WireProblem
+from catenary_fe.system import InputError
 from catenary_fe.theory import MovingForce
 
 Floats = NDArray[np.float64]
@@ -37,6 +38,7 @@ class WireSystem:
     """A system of one wire, assembled.
 
     mbs, wire, ground : the system, its wire and a coordinate marker that never moves
+    height : [m] of the wire where it is not deflected
     mass : sparse, [kg] what the wire carries
     stiffness : sparse, [N/m] of foundation and springs
     """
@@ -44,35 +46,45 @@ class WireSystem:
     mbs: Any
     wire: WireItems
     ground: int
+    height: float
     mass: Any
     stiffness: Any
 
     @property
-    def size(self) -> int:
-        """Number of the wire's coordinates, which come first."""
-        return COORDINATES * len(self.wire.nodes)
+    def part(self) -> slice:
+        """The wire's coordinates among all of the system."""
+        return _part(self.mbs, self.wire)
 
-    def heights(self) -> Floats:
+    def deflection(self) -> Floats:
         """[m] shape (nodes,), at the current state."""
-        q = self.mbs.systemData.GetODE2Coordinates()[: self.size]
-        heights: Floats = self.wire.line.z + q[UP::COORDINATES]
-        return heights
+        q = self.mbs.systemData.GetODE2Coordinates()[self.part]
+        deflection: Floats = self.wire.line.z - self.height + q[UP::COORDINATES]
+        return deflection
+
+    def velocity(self) -> Floats:
+        """[m/s] shape (nodes,), upwards, at the current state."""
+        velocity: Floats = self.mbs.systemData.GetODE2Coordinates_t()[self.part][UP::COORDINATES]
+        return velocity
 
     def carried_energy(self) -> float:
-        """[J] in foundation and springs at the current state, less their force at z = 0 times the way."""
-        q = self.mbs.systemData.GetODE2Coordinates()[: self.size]
+        """[J] in foundation and springs at the current state, above a zero that the meter knows."""
+        q = self.mbs.systemData.GetODE2Coordinates()[self.part]
         return float(0.5 * q @ (self.stiffness @ q))
 
 
-def build_wire(problem: WireProblem) -> WireSystem:
-    """Build all but the moving loads; set the initial state."""
-    mbs = new_system()
-    items = add_wire(mbs, problem.wire, _initial_line(problem))
+def build_wire(problem: WireProblem, mbs: Any = None, height: float = 0.0) -> WireSystem:
+    """Build all but the moving loads and the initial velocity.
+
+    mbs : the system to build in; unset: a new one
+    height : [m] of the wire where it is not deflected
+    """
+    mbs = mbs or new_system()
+    items = add_wire(mbs, problem.wire, _initial_line(problem, height))
     ground = add_ground_coordinate(mbs)
     _hold(mbs, items, ground, problem)
-    mass, stiffness = _add_carried(mbs, items, problem)
+    mass, stiffness = _add_carried(mbs, items, problem, height)
     mbs.Assemble()
-    return WireSystem(mbs, items, ground, mass, stiffness)
+    return WireSystem(mbs, items, ground, height, mass, stiffness)
 
 
 def set_initial_velocity(system: WireSystem, problem: WireProblem) -> None:
@@ -82,8 +94,9 @@ def set_initial_velocity(system: WireSystem, problem: WireProblem) -> None:
     data = system.mbs.systemData
     v = data.GetODE2Coordinates_t(configuration=exu.ConfigurationType.Initial)
     rate, slope_rate = _values_and_slopes(problem.initial_velocity, system.wire.line.x)
-    v[UP : system.size : COORDINATES] = rate
-    v[UP + 2 : system.size : COORDINATES] = slope_rate
+    of_wire = v[system.part].reshape(-1, COORDINATES)
+    of_wire[:, UP], of_wire[:, UP + 2] = rate, slope_rate
+    v[system.part] = of_wire.ravel()
     for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
         data.SetODE2Coordinates_t(v, configuration=configuration)
 
@@ -91,13 +104,14 @@ def set_initial_velocity(system: WireSystem, problem: WireProblem) -> None:
 def wire_at_rest(problem: WireProblem) -> Floats:
     """[m] shape (nodes,), static deflection under the moving forces where they start, and the weight.
 
-    Raises SolverError if there is no equilibrium.
+    Raises InputError for other loads, SolverError if there is no equilibrium.
     """
     system = build_wire(problem)
-    forces = np.zeros(system.size)
+    forces = np.zeros(COORDINATES * len(system.wire.nodes))
     line = system.wire.line
     for load in problem.loads:
-        assert isinstance(load, MovingForce)
+        if not isinstance(load, MovingForce):
+            raise InputError(f"{type(load).__name__}: a wire at rest takes forces known in advance only")
         e = min(max(int(np.searchsorted(line.x, load.start, side="right")) - 1, 0), line.x.size - 2)
         h = line.x[e + 1] - line.x[e]
         index = COORDINATES * e + np.array([UP, UP + 2, COORDINATES + UP, COORDINATES + UP + 2])
@@ -105,15 +119,15 @@ def wire_at_rest(problem: WireProblem) -> Floats:
     system.mbs.AddObject(eii.ObjectGenericODE2(nodeNumbers=system.wire.nodes, forceVector=forces))
     system.mbs.Assemble()
     solve_static(system.mbs, what="wire at rest")
-    return system.heights()
+    return system.deflection()
 
 
 def vertical_matrices(problem: WireProblem) -> tuple[Any, Any]:
     """Sparse stiffness and mass matrix of small vertical motions, held nodes taken out."""
     system = build_wire(problem)
     elements = system.wire.elements
-    K = stiffness_matrix(system.mbs, elements)[: system.size, : system.size] + system.stiffness
-    M = mass_matrix(system.mbs, elements)[: system.size, : system.size] + system.mass
+    K = stiffness_matrix(system.mbs, elements) + system.stiffness
+    M = mass_matrix(system.mbs, elements) + system.mass
     held = [COORDINATES * node + UP for node in _held_nodes(problem)]
     vertical = [COORDINATES * i + j for i in range(len(system.wire.nodes)) for j in (UP, UP + 2)]
     free = np.array(sorted(set(vertical) - set(held)))
@@ -124,11 +138,17 @@ def _held_nodes(problem: WireProblem) -> list[int]:
     return sorted({0, len(problem.x) - 1, *(problem.node(s) for s in problem.supports)})
 
 
-def _initial_line(problem: WireProblem) -> WireLine:
+def _part(mbs: exu.MainSystem, items: WireItems) -> slice:
+    first = int(mbs.systemData.GetNodeLTGODE2(items.nodes[0])[0])
+    return slice(first, first + COORDINATES * len(items.nodes))
+
+
+def _initial_line(problem: WireProblem, height: float) -> WireLine:
     x = np.asarray(problem.x, dtype=float)
-    if problem.initial_deflection is None:
-        return WireLine.through(problem.wire, x, np.zeros(x.size), np.zeros(x.size))
-    return WireLine.through(problem.wire, x, *_values_and_slopes(problem.initial_deflection, x))
+    deflection, slope = np.zeros(x.size), np.zeros(x.size)
+    if problem.initial_deflection is not None:
+        deflection, slope = _values_and_slopes(problem.initial_deflection, x)
+    return WireLine.through(problem.wire, x, height + deflection, slope)
 
 
 def _values_and_slopes(function: Function, x: Floats) -> tuple[Floats, Floats]:
@@ -146,15 +166,18 @@ def _hold(mbs: exu.MainSystem, items: WireItems, ground: int, problem: WireProbl
         hold(mbs, items, node, UP, ground)
 
 
-def _add_carried(mbs: exu.MainSystem, items: WireItems, problem: WireProblem) -> tuple[Any, Any]:
+def _add_carried(
+    mbs: exu.MainSystem, items: WireItems, problem: WireProblem, height: float
+) -> tuple[Any, Any]:
     """Point masses, foundation, springs, dampers and weight as one object; returns its M and K.
 
-    The foundation's matrix is k/ρ times the vertical part of the wire's mass matrix: the same shape functions.
+    The foundation's matrix is k/ρ times the vertical part of the wire's mass matrix.
     """
     from scipy.sparse import csr_matrix, diags
 
     mbs.Assemble()
-    wire_mass = mass_matrix(mbs, items.elements)
+    part = _part(mbs, items)
+    wire_mass = mass_matrix(mbs, items.elements)[part, part]
     up = np.tile(np.eye(COORDINATES)[UP], len(items.nodes))
     slope_up = np.roll(up, 2)
     vertical = diags(up + slope_up)
@@ -163,8 +186,8 @@ def _add_carried(mbs: exu.MainSystem, items: WireItems, problem: WireProblem) ->
     K = diags(_at_nodes(problem, problem.springs, [0.0, 1.0, 0.0, 0.0]))
     bedding = problem.foundation_stiffness / problem.wire.mass_per_length
     K = csr_matrix(K + bedding * (vertical @ wire_mass @ vertical))
-    # the springs are force-free at z = 0, not where the wire starts
-    force = -K @ (items.line.coordinates().ravel() * (up + slope_up))
+    # the springs are force-free on the undeflected wire, not where it starts
+    force = -K @ ((items.line.coordinates().ravel() - height * up) * (up + slope_up))
     if problem.weight:
         force = force - GRAVITY * (wire_mass + M) @ up
     nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=K.shape))

@@ -40,8 +40,8 @@ class WireProblem:
 
     wire : its mass per length, tension and stiffnesses
     x : [m] shape (nodes,), rising, of the nodes; supports, masses and springs lie on nodes
-    tensioned : the last node is free along the track and pulled by the wire's tension; otherwise both ends are
-        fixed, and the tension rises as the wire is deflected
+    tensioned : the last node is free along the track and pulled by the wire's tension; otherwise both ends
+        are fixed, and the tension rises as the wire is deflected
     supports : [m] rigid supports, which let the wire slide along the track
     foundation_stiffness : [N/m²] vertical, per length of the wire
     masses : [kg] by position [m]
@@ -77,7 +77,7 @@ class WireProblem:
 
     def node(self, position: float) -> int:
         """Number of the node at a position [m]. Raises InputError if there is none."""
-        nearest = int(np.abs(self.x - position).argmin())
+        nearest = int(np.abs(np.asarray(self.x) - position).argmin())
         if abs(self.x[nearest] - position) > 1e-6:
             raise InputError(
                 f"{position:g} m is not on a node, the nearest is at {self.x[nearest]:g} m; add it to x"

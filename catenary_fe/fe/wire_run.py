@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from catenary_fe.fe.energy import EnergyMeter
 from catenary_fe.fe.solver import solve_dynamic
 from catenary_fe.fe.solver_settings import TimeSettings
-from catenary_fe.fe.wire import COORDINATES, UP
 from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_velocity
 from catenary_fe.fe.wire_loads import WireLoad, WireTrack, add_load
-from catenary_fe.fe.wire_problem import WireMotion, WireProblem
+from catenary_fe.fe.wire_problem import SlidingPantograph, WireMotion, WireProblem
+from catenary_fe.system import InputError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -41,9 +41,14 @@ def run_wire(
     energy : store the energy of the wire and its springs too; not with a sliding pantograph
     progress : called with the share done, 0 to 1
 
-    Raises SolverError if a step does not converge.
+    Raises InputError for a duration or interval that is no whole number of steps, SolverError if a step does
+    not converge.
     """
     time = time or TimeSettings(step=5e-4, tolerance=1e-6)
+    steps = _steps("duration", duration, time.step)
+    every = _steps("interval", interval, time.step) if interval else 1
+    if energy and any(isinstance(load, SlidingPantograph) for load in problem.loads):
+        raise InputError("energy: not known for a wire with a sliding pantograph; leave it out")
     system = build_wire(problem)
     mbs = system.mbs
     meter = EnergyMeter(mbs) if energy else None
@@ -53,9 +58,7 @@ def run_wire(
     set_initial_velocity(system, problem)
     for load in loads:
         load.move_to(0.0)
-    steps = round(duration / time.step)
-    every = round(interval / time.step) if interval else 1
-    recorder = _Recorder(system, loads, meter, steps, every)
+    recorder = Recorder(system, loads, steps, every, meter)
 
     def before_step(mbs: exu.MainSystem, end: float) -> bool:
         count = round(end / time.step)
@@ -72,16 +75,23 @@ def run_wire(
     return recorder.motion(time.step)
 
 
-class _Recorder:
+def _steps(name: str, value: float, step: float) -> int:
+    count = round(value / step)
+    if count < 1 or abs(count * step - value) > 1e-6 * step:
+        raise InputError(f"{name} = {value!r} s: must be a whole number of steps of {step:g} s")
+    return count
+
+
+class Recorder:
     """Reads the state at every so many steps."""
 
     def __init__(
         self,
         system: WireSystem,
         loads: Sequence[WireLoad],
-        meter: EnergyMeter | None,
         steps: int,
         every: int,
+        meter: EnergyMeter | None = None,
     ) -> None:
         self._system, self._loads, self._meter, self._every = system, loads, meter, every
         self._counts = np.arange(0, steps + 1, every)
@@ -94,8 +104,7 @@ class _Recorder:
         if count % self._every:
             return
         row = count // self._every
-        v = self._system.mbs.systemData.GetODE2Coordinates_t()[: self._system.size]
-        self._deflection[row], self._velocity[row] = self._system.heights(), v[UP::COORDINATES]
+        self._deflection[row], self._velocity[row] = self._system.deflection(), self._system.velocity()
         for i, load in enumerate(self._loads):
             self._at_loads[:, row, i] = load.force(), load.deflection(), load.head()
         if self._meter:
@@ -103,10 +112,12 @@ class _Recorder:
 
     def motion(self, step: float) -> WireMotion:
         return WireMotion(
-            self._counts * step,
-            self._system.wire.line.x,
-            self._deflection,
-            self._velocity,
-            *self._at_loads,
-            self._energy,
+            t=np.asarray(self._counts * step, dtype=np.float64),
+            x=self._system.wire.line.x,
+            deflection=self._deflection,
+            velocity=self._velocity,
+            forces=self._at_loads[0],
+            under_loads=self._at_loads[1],
+            heads=self._at_loads[2],
+            energy=self._energy,
         )

@@ -1,0 +1,28 @@
+"""``python -m validation [CASE ...] [--quick] [--jobs N]``: exit code 1 on a miss."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from validation import run_cases, write_report
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m validation")
+    parser.add_argument("cases", nargs="*")
+    parser.add_argument("--quick", action="store_true", help="only what takes seconds")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    chosen = parser.parse_args()
+    checks = run_cases(chosen.cases or None, quick=chosen.quick, jobs=chosen.jobs)
+    for check in checks:
+        mark = "passed" if check.passed else "MISSED"
+        print(f"{mark} {check.error:10.3e} <= {check.tolerance:8.1e}  {check.case}: {check.quantity}")
+    if not chosen.cases and not chosen.quick:
+        write_report(checks, Path(__file__).parent)
+    return 0 if all(check.passed for check in checks) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

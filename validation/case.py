@@ -1,0 +1,61 @@
+"""A case of the suite, and what a run of the suite returns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from matplotlib.figure import Figure
+
+from validation.check import Check
+
+TWIN = 1.01  # of a parameter in a case's twin: 1 % off
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One case, in three steps: compute, compare, draw.
+
+    name : unique; what the command line takes
+    kind : 'verification' against closed forms, 'validation' against published results
+    title : one line for the report
+    text : what was found, for the report
+    off : what is wrong in the case's twin
+    compute : makes the data, which the twin shares; its argument asks for the quick variant
+    compare : makes the checks from the data; ``slip`` is 1, or 1.01 for the twin: a factor on one parameter
+        of the reference, or, where ``off`` says so, a sign to take something else
+    draw : draws the data
+    quick : part of a quick run
+    """
+
+    name: str
+    kind: Literal["verification", "validation"]
+    title: str
+    text: str
+    off: str
+    compute: Callable[[bool], Any]
+    compare: Callable[[Any, float], list[Check]]
+    draw: Callable[[Any, Figure], None]
+    quick: bool = True
+
+    def checks(self, data: Any, *, twin: bool = False) -> list[Check]:
+        """Compare the data with the reference, or with the twin's wrong one."""
+        found = self.compare(data, TWIN if twin else 1.0)
+        return [replace(check, case=self.name) for check in found]
+
+
+@dataclass
+class Outcome:
+    """What one case gave. picture : a PNG file's bytes, or none."""
+
+    checks: list[Check]
+    picture: bytes | None = None
+
+
+class Checks(list[Check]):
+    """A list of checks with the pictures that belong to it, by case."""
+
+    def __init__(self, checks: Sequence[Check] = (), pictures: dict[str, bytes] | None = None) -> None:
+        super().__init__(checks)
+        self.pictures: dict[str, bytes] = pictures or {}

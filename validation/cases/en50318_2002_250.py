@@ -1,0 +1,40 @@
+"""EN 50318:2002 at 250 km/h: the accepted ranges and a published result."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from validation.case import TWIN, Case
+from validation.check import Check
+from validation.en50318 import RunData, draw_run, range_checks, run
+
+SPEED, OTHER = 250, 300  # km/h
+
+
+def compute(quick: bool) -> RunData:
+    return run(SPEED)
+
+
+def compare_run(data: RunData, slip: float) -> list[Check]:
+    return range_checks(data, SPEED, ranges_of=OTHER if slip == TWIN else SPEED)
+
+
+def draw(data: RunData, figure: Figure) -> None:
+    draw_run(data, SPEED, figure)
+
+
+CASE = Case(
+    name="en50318_2002_250",
+    kind="validation",
+    title="EN 50318:2002 at 250 km/h",
+    text=(
+        "Reference model of the standard, one pantograph, spans 5 and 6, causal sixth-order"
+        " Butterworth low-pass at"
+        " 20 Hz. The loss of contact is counted on the unfiltered force."
+    ),
+    off="the ranges of 300 km/h",
+    compute=compute,
+    compare=compare_run,
+    draw=draw,
+    quick=False,
+)

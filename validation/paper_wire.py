@@ -1,0 +1,43 @@
+"""The wire of the paper, and what the cases on it share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe import theory
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.fe.wire_problem import WireMotion, WireProblem
+from catenary_fe.fe.wire_run import run_wire
+from catenary_fe.system import Wire
+
+Floats = NDArray[np.float64]
+
+TENSION, MASS, FORCE = 20e3, 1.33, 200.0  # N, kg/m, N
+STRING: dict[str, Any] = {"tension": TENSION, "mass_per_length": MASS}
+C = theory.wave_speed(**STRING)  # 122.6 m/s
+AXIAL_STIFFNESS = 1.7e7  # N, of 150 mm² copper: the paper names none
+PAPER = 'paper, "Selected problems of wave phenomena in catenaries"'
+
+
+def wire(bending_stiffness: float = 0.0, **changed: float) -> Wire:
+    """The paper's wire; a string unless it is given a bending stiffness."""
+    values = {**STRING, "axial_stiffness": AXIAL_STIFFNESS, **changed}
+    return Wire(bending_stiffness=bending_stiffness, **values)
+
+
+def run(
+    problem: WireProblem,
+    duration: float,
+    *,
+    step: float = 5e-4,
+    interval: float | None = None,
+    tolerance: float = 1e-6,
+    spectral_radius: float = 0.9,
+    energy: bool = False,
+) -> WireMotion:
+    """Integrate with the steps that most cases take."""
+    time = TimeSettings(step=step, tolerance=tolerance, spectral_radius=spectral_radius)
+    return run_wire(problem, duration=duration, time=time, interval=interval, energy=energy)

@@ -1,0 +1,82 @@
+"""Writes REPORT.md and its pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from validation.case import Case
+from validation.cases import CASES
+from validation.check import Check
+
+_INTRODUCTION = """# Validation report
+
+Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
+
+**{passed} of {count} checks pass.**{missed}
+
+*Verification* compares with closed forms and independent numerical solutions of the same equations;
+*validation* with published results. An error is relative to the reference unless its line says otherwise; of
+a curve, it is the root mean square of the difference over that of the reference. Each case has a twin, wrong
+on purpose by what its last line names, which the tests run and which must fail.
+"""
+_HEADINGS = {"verification": "Verification", "validation": "Validation"}
+
+
+def write_report(checks: Sequence[Check], path: Path | str) -> Path:
+    """Write ``REPORT.md`` and ``pictures/`` into the folder ``path``; returns the report's path."""
+    folder = Path(path)
+    pictures: dict[str, bytes] = getattr(checks, "pictures", {})
+    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    for name, picture in pictures.items():
+        (folder / "pictures" / f"{name}.png").write_bytes(picture)
+    report = folder / "REPORT.md"
+    report.write_text(report_text(checks, set(pictures)), encoding="utf-8")
+    return report
+
+
+def report_text(checks: Sequence[Check], pictures: set[str]) -> str:
+    """The report as Markdown. pictures : names of the cases that have one"""
+    misses = [check for check in checks if not check.passed]
+    missed = " Missed: " + "; ".join(f"{c.case}, {c.quantity}" for c in misses) + "." if misses else ""
+    parts = [
+        _INTRODUCTION.format(
+            exudyn=version("exudyn"), passed=len(checks) - len(misses), count=len(checks), missed=missed
+        )
+    ]
+    by_case: dict[str, list[Check]] = {}
+    for check in checks:
+        by_case.setdefault(check.case, []).append(check)
+    for kind, heading in _HEADINGS.items():
+        cases = [name for name in by_case if CASES[name].kind == kind]
+        if cases:
+            parts.append(f"## {heading}\n")
+        parts += [_section(CASES[name], by_case[name], name in pictures) for name in cases]
+    return "\n".join(parts)
+
+
+def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
+    lines = [f"### {case.title}\n", f"`{case.name}`: {case.text}\n"]
+    lines += ["| quantity | computed | reference | error | tolerance | |", "|---|---|---|---|---|---|"]
+    lines += [_row(check) for check in checks]
+    sources = list(dict.fromkeys(check.source for check in checks))
+    reasons = list(dict.fromkeys(check.reason for check in checks))
+    lines += ["", *(f"- Tolerance: {reason}" for reason in reasons)]
+    lines += [f"- Reference: {source}" for source in sources]
+    lines += [f"- Twin: {case.off}", ""]
+    if picture:
+        lines += [f"![{case.title}](pictures/{case.name}.png)\n"]
+    return "\n".join(lines)
+
+
+def _row(check: Check) -> str:
+    mark = "passed" if check.passed else "**MISSED**"
+    values = " | ".join(_text(value, check.unit) for value in (check.computed, check.reference))
+    return f"| {check.quantity} | {values} | {check.error:.2g} | {check.tolerance:.2g} | {mark} |"
+
+
+def _text(value: float | str, unit: str) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{value:.6g} {unit}".rstrip()

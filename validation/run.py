@@ -1,0 +1,106 @@
+"""Runs the cases, on one process or more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import lru_cache
+from io import BytesIO
+from multiprocessing import get_context
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from catenary_fe.system import InputError
+from validation.case import Checks, Outcome
+from validation.cases import CASES
+
+Progress = Callable[[float], None]
+
+
+def run_cases(
+    names: Sequence[str] | None = None,
+    *,
+    quick: bool = False,
+    jobs: int = 1,
+    pictures: bool | None = None,
+    progress: Progress | None = None,
+) -> Checks:
+    """Run cases and compare.
+
+    names : of cases; unset: all, or in a quick run the quick ones
+    quick : reduced variants, seconds each
+    jobs : number of processes
+    pictures : draw too; unset: unless quick
+    progress : called with the share of the cases done, 0 to 1
+
+    Raises InputError for a name that there is no case of.
+    """
+    draw = not quick if pictures is None else pictures
+    return _run(_chosen(names, quick), quick, jobs, draw, False, progress)
+
+
+def run_twins(
+    names: Sequence[str] | None = None,
+    *,
+    quick: bool = False,
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> Checks:
+    """Run each case's twin, wrong on purpose: checks that are marked ``twin`` must not pass."""
+    return _run(_chosen(names, quick), quick, jobs, False, True, progress)
+
+
+def run_case(name: str, quick: bool, draw: bool, twin: bool) -> Outcome:
+    """Run one case, or its twin."""
+    case = CASES[name]
+    data = _computed(name, quick)
+    checks = case.checks(data, twin=twin)
+    if not draw:
+        return Outcome(checks)
+    figure = Figure(figsize=(8, 4.5), layout="constrained")
+    case.draw(data, figure)
+    picture = BytesIO()
+    figure.savefig(picture, format="png", dpi=110, metadata={"Software": None})
+    return Outcome(checks, picture.getvalue())
+
+
+@lru_cache(maxsize=8)
+def _computed(name: str, quick: bool) -> Any:
+    """A case and its twin share what costs time."""
+    return CASES[name].compute(quick)
+
+
+def _chosen(names: Sequence[str] | None, quick: bool) -> list[str]:
+    if names is None:
+        return [name for name, case in CASES.items() if case.quick or not quick]
+    for name in names:
+        if name not in CASES:
+            raise InputError(f"validation case {name!r} is unknown; there are {', '.join(CASES)}")
+    return list(dict.fromkeys(names))
+
+
+def _run(
+    names: list[str], quick: bool, jobs: int, draw: bool, twin: bool, progress: Progress | None
+) -> Checks:
+    outcomes: dict[str, Outcome] = {}
+    for name, outcome in _outcomes(names, quick, jobs, draw, twin):
+        outcomes[name] = outcome
+        if progress:
+            progress(len(outcomes) / len(names))
+    checks = [check for name in names for check in outcomes[name].checks]
+    return Checks(checks, {name: p for name in names if (p := outcomes[name].picture)})
+
+
+def _outcomes(
+    names: list[str], quick: bool, jobs: int, draw: bool, twin: bool
+) -> Iterator[tuple[str, Outcome]]:
+    if jobs == 1 or len(names) == 1:
+        for name in names:
+            yield name, run_case(name, quick, draw, twin)
+        return
+    # the longest cases are the last of the registry: begin with them
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        running = {pool.submit(run_case, name, quick, draw, twin): name for name in reversed(names)}
+        for future in as_completed(running):
+            yield running[future], future.result()
