@@ -6,15 +6,24 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis import StaticState, elasticity, simulate, solve_statics
+    from catenary_fe.analysis import StaticState, elasticity, modal_run, simulate, solve_modes, solve_statics
     from catenary_fe.equilibrium import Shape, find_form, find_heights
     from catenary_fe.fe import MeshSettings, TimeSettings
-    from catenary_fe.results import Elasticity, ForceStatistics, Run, load_run
+    from catenary_fe.fe.wire_problem import (
+        SlidingPantograph,
+        WireMotion,
+        WireProblem,
+        even_nodes,
+        graded_nodes,
+    )
+    from catenary_fe.fe.wire_run import run_wire
+    from catenary_fe.results import Elasticity, ForceStatistics, ModalRun, Modes, Run, load_run
     from catenary_fe.system import (
         AerodynamicForce,
         Catenary,
         CatenaryError,
         Dropper,
+        ElasticPantograph,
         InputError,
         Pantograph,
         RayleighDamping,
@@ -33,15 +42,18 @@ if TYPE_CHECKING:
 
 # loaded on first use: importing the package stays quick
 _ROOMS = {
-    "analysis": ("StaticState", "elasticity", "simulate", "solve_statics"),
+    "analysis": ("StaticState", "elasticity", "modal_run", "simulate", "solve_modes", "solve_statics"),
     "equilibrium": ("Shape", "find_form", "find_heights"),
     "fe": ("MeshSettings", "TimeSettings"),
-    "results": ("Elasticity", "ForceStatistics", "Run", "load_run"),
+    "fe.wire_problem": ("SlidingPantograph", "WireMotion", "WireProblem", "even_nodes", "graded_nodes"),
+    "fe.wire_run": ("run_wire",),
+    "results": ("Elasticity", "ForceStatistics", "ModalRun", "Modes", "Run", "load_run"),
     "system": (
         "AerodynamicForce",
         "Catenary",
         "CatenaryError",
         "Dropper",
+        "ElasticPantograph",
         "InputError",
         "Pantograph",
         "RayleighDamping",
@@ -65,14 +77,18 @@ __all__ = [
     "Catenary",
     "CatenaryError",
     "Dropper",
+    "ElasticPantograph",
     "Elasticity",
     "ForceStatistics",
     "InputError",
     "MeshSettings",
+    "ModalRun",
+    "Modes",
     "Pantograph",
     "RayleighDamping",
     "Run",
     "Shape",
+    "SlidingPantograph",
     "SolverError",
     "Span",
     "Stage",
@@ -81,15 +97,22 @@ __all__ = [
     "Support",
     "TimeSettings",
     "Wire",
+    "WireMotion",
+    "WireProblem",
     "elasticity",
+    "even_nodes",
     "find_form",
     "find_heights",
+    "graded_nodes",
     "layout_warnings",
     "library",
     "load_catenary",
     "load_pantograph",
     "load_run",
+    "modal_run",
+    "run_wire",
     "simulate",
+    "solve_modes",
     "solve_statics",
     "target_mean_force",
 ]

@@ -1,6 +1,8 @@
-"""What is computed with a model: statics, elasticity, runs in time."""
+"""What is computed with a model: statics, elasticity, modes, runs in time."""
 
+from catenary_fe.analysis.modal_run import modal_run
+from catenary_fe.analysis.modes import solve_modes
 from catenary_fe.analysis.simulate import simulate
 from catenary_fe.analysis.statics import StaticState, elasticity, solve_statics
 
-__all__ = ["StaticState", "elasticity", "simulate", "solve_statics"]
+__all__ = ["StaticState", "elasticity", "modal_run", "simulate", "solve_modes", "solve_statics"]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system import InputError, Pantograph
+from catenary_fe.system import AnyPantograph, InputError
 from catenary_fe.system.plausibility import layout_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
@@ -37,7 +37,7 @@ def check_speed(speed: float) -> None:
 
 def run_warnings(
     shape: Shape,
-    pantographs: Sequence[Pantograph],
+    pantographs: Sequence[AnyPantograph],
     speed: float,
     start: NDArray[np.float64],
     time: TimeSettings,

@@ -16,7 +16,7 @@ from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.results.run import FORMAT
-from catenary_fe.system import Pantograph
+from catenary_fe.system import AnyPantograph
 
 if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 def make_run(
     shape: Shape,
-    pantographs: Sequence[Pantograph],
+    pantographs: Sequence[AnyPantograph],
     uplifts: Floats,
     speed: float,
     time: TimeSettings,
@@ -89,8 +89,8 @@ def _labelled(
 
 
 def _stack(masses: Sequence[Floats]) -> Floats:
-    """Shape (pantographs, masses, times); pantographs with fewer masses are filled up with nan."""
-    most = max(m.shape[0] for m in masses)
+    """Shape (pantographs, masses, times); pantographs with fewer masses, or none, are filled up with nan."""
+    most = max(1, *(m.shape[0] for m in masses))
     stacked = np.full((len(masses), most, masses[0].shape[1]), np.nan)
     for i, heights in enumerate(masses):
         stacked[i, : heights.shape[0]] = heights
@@ -104,7 +104,7 @@ def _unique(names: Sequence[str]) -> list[str]:
 
 
 def _provenance(
-    shape: Shape, pantographs: Sequence[Pantograph], speed: float, time: TimeSettings
+    shape: Shape, pantographs: Sequence[AnyPantograph], speed: float, time: TimeSettings
 ) -> dict[str, Any]:
     catenary = shape.catenary.model_dump_json()
     records = json.dumps([p.model_dump(mode="json") for p in pantographs])

@@ -15,7 +15,7 @@ from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import InputError, Pantograph, SolverError
+from catenary_fe.system import AnyPantograph, InputError, SolverError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -39,7 +39,7 @@ class Plan:
 
 def simulate(
     shape: Shape,
-    pantographs: Sequence[Pantograph],
+    pantographs: Sequence[AnyPantograph],
     *,
     speed: float,
     positions: Sequence[float] | None = None,
@@ -93,7 +93,7 @@ def simulate(
 
 def _drive(
     shape: Shape,
-    pantographs: Sequence[Pantograph],
+    pantographs: Sequence[AnyPantograph],
     uplifts: Floats,
     speed: float,
     plan: Plan,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.model import one_sided
 from catenary_fe.fe.wire import UP, WireItems
-from catenary_fe.system import Pantograph
+from catenary_fe.system import AnyPantograph, ElasticPantograph, Pantograph
 
 Floats = NDArray[np.float64]
 _ALONG_TO_UP = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # Mass1D moves along its own first axis
@@ -40,13 +40,13 @@ class PantographItems:
     """Numbers of a pantograph's items in an Exudyn system.
 
     nodes : one for each mass, head first; coordinate 0 is the height above the nominal contact wire height
-    uplift_load : the constant force on the lowest mass
+    uplift_load : the constant force on the lowest mass, None without masses
     wire_marker, connector : the contact's point on the wire, and its spring
     """
 
-    pantograph: Pantograph
+    pantograph: AnyPantograph
     nodes: list[int]
-    uplift_load: int
+    uplift_load: int | None
     wire_marker: int
     connector: int
 
@@ -95,6 +95,31 @@ def add_pantograph(model: Track, pantograph: Pantograph, uplift: float, function
     return PantographItems(pantograph, nodes, int(load), int(on_wire), int(connector))
 
 
+def add_elastic_pantograph(model: Track, pantograph: ElasticPantograph, function: object) -> PantographItems:
+    """Add a force that falls as the wire rises, at the wire's first element.
+
+    function : what :func:`elastic_function` made for this system
+
+    A connector with the law in it, not a load: the force belongs to the height at the step's end.
+    """
+    mbs = model.mbs
+    on_wire = mbs.AddMarker(
+        eii.MarkerBodyPosition(bodyNumber=model.contact.elements[0], localPosition=[0, 0, 0])
+    )
+    rail = mbs.AddNode(eii.NodePointGround(referenceCoordinates=[0, model.contact_wire_height, 0]))
+    nominal = mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=rail))
+    force, stiffness = pantograph.tangent(0.0)
+    connector = mbs.AddObject(
+        eii.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[on_wire, nominal],
+            stiffness=[0, stiffness, 0],
+            damping=[force, 0, 0],
+            springForceUserFunction=function,
+        )
+    )
+    return PantographItems(pantograph, [], None, int(on_wire), int(connector))
+
+
 def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
     # the head's velocity is seen from the wire's material point; damping[0], of no use in the plane, holds
     # what the wire's inclination adds (the offset, which would be the place, is taken off the displacement)
@@ -102,18 +127,44 @@ def _push_only(mbs, t, itemNumber, displacement, velocity, stiffness, damping, o
     return [0.0, push, 0.0]
 
 
+def _slacken(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
+    # displacement is that of the nominal height from the wire; damping[0] holds the force there
+    symbolic = exu.symbolic
+    push = symbolic.max(symbolic.Real(0.0), damping[0] + stiffness[1] * displacement[1])
+    return [0.0, push, 0.0]
+
+
 def contact_function(model: Track) -> object:
     """The unilateral contact law, in C++; it must outlive the connectors that use it."""
+    return _in_cpp(model, _push_only, "push only")
+
+
+def elastic_function(model: Track) -> object:
+    """The law of elastic pantographs, likewise."""
+    return _in_cpp(model, _slacken, "slacken")
+
+
+def _in_cpp(model: Track, law: Callable[..., Any], name: str) -> object:
     from exudyn.advancedUtilities import CreateSymbolicUserFunction
 
     function = CreateSymbolicUserFunction(
-        model.mbs,
-        _push_only,
-        "springForceUserFunction",
-        itemTypeName="ObjectConnectorCartesianSpringDamper",
+        model.mbs, law, "springForceUserFunction", itemTypeName="ObjectConnectorCartesianSpringDamper"
     )
-    model.mbs.variables["push only"] = function
+    model.mbs.variables[name] = function
     return function
+
+
+def add_pantographs(model: Track, pantographs: Sequence[tuple[AnyPantograph, float]]) -> list[PantographItems]:
+    """Add pantographs of any kind, each with its uplift [N]."""
+    chains = any(isinstance(p, Pantograph) for p, _ in pantographs)
+    push = contact_function(model) if chains else None
+    slacken = elastic_function(model) if not all(isinstance(p, Pantograph) for p, _ in pantographs) else None
+    return [
+        add_elastic_pantograph(model, pantograph, slacken)
+        if isinstance(pantograph, ElasticPantograph)
+        else add_pantograph(model, pantograph, uplift, push)
+        for pantograph, uplift in pantographs
+    ]
 
 
 class MovingContact:
@@ -124,6 +175,11 @@ class MovingContact:
         self._wire = model.contact
         self._pantographs = pantographs
         self._at = [(-1, 0.0)] * len(pantographs)
+        self._elevation = [0.0] * len(pantographs)
+        self._tangent = [
+            p.pantograph.tangent(0.0) if isinstance(p.pantograph, ElasticPantograph) else None
+            for p in pantographs
+        ]
 
     def move_to(self, positions: Floats, speed: float) -> None:
         """Put the contact points at these positions [m] along the track, shape (pantographs,)."""
@@ -135,12 +191,43 @@ class MovingContact:
                 self._mbs.SetMarkerParameter(items.wire_marker, "bodyNumber", self._wire.elements[element])
                 changed = True
             self._mbs.SetMarkerParameter(items.wire_marker, "localPosition", [local, 0, 0])
-            if items.pantograph.contact_damping:
+            if isinstance(items.pantograph, ElasticPantograph):
+                self._follow_law(i, items.pantograph)
+            elif items.pantograph.contact_damping:
                 climb = speed * self.inclination(i)
                 damping = [climb, items.pantograph.contact_damping, 0]
                 self._mbs.SetObjectParameter(items.connector, "damping", damping)
         if changed:
             self._mbs.AssembleLTGLists()
+
+    def settle_laws(self) -> bool:
+        """Take the straight piece of each law where the wire is now; true if that is another one."""
+        changed = False
+        for i, items in enumerate(self._pantographs):
+            if isinstance(items.pantograph, ElasticPantograph):
+                self._elevation[i] = self._elevation_now(i)
+                changed |= self._take_tangent(i, items.pantograph, self._elevation[i])
+        return changed
+
+    def _follow_law(self, i: int, pantograph: ElasticPantograph) -> None:
+        """Take the straight piece of the law where the wire is expected at the step's end."""
+        before, now = self._elevation[i], self._elevation_now(i)
+        self._elevation[i] = now
+        self._take_tangent(i, pantograph, 2 * now - before)
+
+    def _elevation_now(self, i: int) -> float:
+        displacement = exu.OutputVariableType.Displacement
+        return -float(self._mbs.GetObjectOutput(self._pantographs[i].connector, displacement)[UP])
+
+    def _take_tangent(self, i: int, pantograph: ElasticPantograph, elevation: float) -> bool:
+        tangent = pantograph.tangent(elevation)
+        if tangent == self._tangent[i]:
+            return False
+        self._tangent[i] = tangent
+        connector = self._pantographs[i].connector
+        self._mbs.SetObjectParameter(connector, "stiffness", [0, tangent[1], 0])
+        self._mbs.SetObjectParameter(connector, "damping", [tangent[0], 0, 0])
+        return True
 
     def inclination(self, pantograph: int) -> float:
         """dz/dx of the wire over a pantograph's head, at the current state."""

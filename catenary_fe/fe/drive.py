@@ -9,17 +9,18 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.contact import MovingContact, PantographItems, add_pantograph, contact_function, locate
+from catenary_fe.fe.contact import MovingContact, PantographItems, add_pantographs, locate
 from catenary_fe.fe.energy import EnergyMeter
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
 from catenary_fe.fe.solver import solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.wire import COORDINATES, UP, hermite
-from catenary_fe.system import Catenary, Pantograph
+from catenary_fe.system import AnyPantograph, Catenary
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
+_LAW_ROUNDS = 20  # straight pieces of an elastic pantograph's law to try for the start
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def drive(
     catenary: Catenary,
     mesh: Mesh,
     installation: Installation,
-    pantographs: Sequence[tuple[Pantograph, float]],
+    pantographs: Sequence[tuple[AnyPantograph, float]],
     trip: Trip,
     progress: Progress | None = None,
 ) -> Journey:
@@ -89,14 +90,17 @@ def drive(
     Raises SolverError where a solve fails.
     """
     model = build_model(catenary, mesh, installation)
-    function = contact_function(model)
-    items = [add_pantograph(model, pantograph, uplift, function) for pantograph, uplift in pantographs]
+    items = add_pantographs(model, pantographs)
     contact = MovingContact(model, items)
     mbs = model.mbs
     mbs.Assemble()
     contact.move_to(trip.start, 0.0)
     raise_heads(model, items)
     solve_static(mbs, what="static contact at the start")
+    for _ in range(_LAW_ROUNDS):
+        if not contact.settle_laws():
+            break
+        solve_static(mbs, what="static contact at the start")
     recorder = _Recorder(model, items, trip)
     step = trip.time.step
 
@@ -202,7 +206,8 @@ class _Recorder:
         trip, model = self._trip, self._model
         time: Floats = np.arange(trip.steps + 1, dtype=np.float64) * trip.time.step
         wire = np.array(self._wire) if self._wire else None
-        heads = np.array([masses[0] for masses in self._masses])
+        nominal = np.zeros((1, time.size))  # an elastic pantograph's law counts from there
+        heads = np.array([masses[0] if masses.size else nominal[0] for masses in self._masses])
         line = model.contact.line
         return Journey(
             time=time,

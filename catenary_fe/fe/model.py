@@ -108,7 +108,7 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     ground = add_ground_coordinate(mbs)
     for wire, items in ((catenary.contact_wire, contact), (catenary.messenger_wire, messenger)):
         anchor_and_tension(mbs, items, ground, wire)
-    masses = _point_masses(catenary, mesh, installation.dropper_lengths)
+    masses = point_masses(catenary, mesh, installation.dropper_lengths)
     add_overlay(mbs, (contact, messenger), masses, catenary.damping)
     droppers = _add_droppers(mbs, catenary, mesh, contact, messenger, installation.dropper_lengths)
     held_arms = _add_arms(mbs, catenary, mesh, contact, ground, installation, held)
@@ -117,7 +117,7 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     return Model(mbs, catenary, mesh, contact, messenger, droppers, lengths, ground, held_arms, held_supports)
 
 
-def _point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Floats:
+def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Floats:
     """[kg], shape (nodes,), of clamps, droppers and arms by node, contact wire first."""
     on_contact, on_messenger = np.zeros(mesh.contact.x.size), np.zeros(mesh.messenger.x.size)
     for i, dropper in enumerate(catenary.droppers):
@@ -145,6 +145,17 @@ def one_sided(stretch: Any, rate: Any, stiffness: Any, damping: Any) -> Any:
     return spring + symbolic.max(-spring, symbolic.min(spring, damping * rate))
 
 
+def dropper_function(mbs: exu.MainSystem) -> object:
+    """The force law of droppers, in C++; one object serves all droppers of a system, which keeps it alive."""
+    from exudyn.advancedUtilities import CreateSymbolicUserFunction
+
+    function = CreateSymbolicUserFunction(
+        mbs, _tension_only, "springForceUserFunction", itemTypeName="ObjectConnectorSpringDamper"
+    )
+    mbs.variables["tension only"] = function
+    return function
+
+
 def _add_droppers(
     mbs: exu.MainSystem,
     catenary: Catenary,
@@ -155,13 +166,7 @@ def _add_droppers(
 ) -> list[int]:
     if not catenary.droppers:
         return []
-    from exudyn.advancedUtilities import CreateSymbolicUserFunction
-
-    # a symbolic function runs in C++; one object serves all droppers and must outlive them
-    function = CreateSymbolicUserFunction(
-        mbs, _tension_only, "springForceUserFunction", itemTypeName="ObjectConnectorSpringDamper"
-    )
-    mbs.variables["tension only"] = function
+    function = dropper_function(mbs)
     damping = dropper_damping(catenary)
     return [
         int(

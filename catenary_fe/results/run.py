@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
-from catenary_fe.system import Catenary, InputError, Pantograph
+from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,9 +52,10 @@ class Run:
         return Catenary.model_validate_json(self.data.attrs["catenary"])
 
     @property
-    def pantographs(self) -> tuple[Pantograph, ...]:
+    def pantographs(self) -> tuple[AnyPantograph, ...]:
         """The pantographs that ran, in the order of the data."""
-        return tuple(Pantograph.model_validate(p) for p in json.loads(self.data.attrs["pantographs"]))
+        records = json.loads(self.data.attrs["pantographs"])
+        return tuple((Pantograph if "stages" in p else ElasticPantograph).model_validate(p) for p in records)
 
     @property
     def evaluated_spans(self) -> tuple[int, ...]:

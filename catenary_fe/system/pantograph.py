@@ -1,7 +1,8 @@
-"""The pantograph as a chain of lumped masses on a base that moves along the track."""
+"""The pantograph: a chain of lumped masses on a base that moves along the track, or an elastic force."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal, Self, get_args
 
 from pydantic import field_validator, model_validator
@@ -107,3 +108,61 @@ class Pantograph(Parameters):
         if self.mean_force is None or isinstance(self.mean_force, float):
             return self.mean_force
         return target_mean_force(self.mean_force, speed)
+
+
+class ElasticPantograph(Parameters):
+    """A pantograph without masses whose force falls as the wire rises, and never pulls.
+
+    Either linear, F = max(0, force − stiffness · elevation), or by a ``law`` of points. Source: the paper
+    "Selected problems of wave phenomena in catenaries", section 3.1, which leaves the law open.
+    """
+
+    name: Text = "elastic pantograph"
+    """what tables and pictures call it"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    force: Positive | None = None
+    """[N] on a wire at the nominal contact wire height; unset with a `law`"""
+    stiffness: NonNegative = 0.0
+    """[N/m] by which the force falls as the wire rises; 0: a constant force"""
+    law: tuple[tuple[Number, NonNegative], ...] = ()
+    """pairs of elevation [m] above the nominal height and force [N], straight between, constant outside"""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        if (self.force is None) == (not self.law):
+            raise ValueError("force and law: give exactly one, a force (with its stiffness) or a law of points")
+        if self.law and self.stiffness:
+            raise ValueError(f"stiffness = {self.stiffness:g} N/m has no effect beside a law; leave it out")
+        for (low, strong), (high, weak) in pairwise(self.law):
+            if high <= low or weak > strong:
+                raise ValueError(
+                    f"law: after {strong:g} N at {low:g} m comes {weak:g} N at {high:g} m; elevations must rise"
+                    " and forces must not"
+                )
+        return self
+
+    def contact_force(self, elevation: float) -> float:
+        """[N] on a wire at an elevation [m] above its nominal height."""
+        force, stiffness = self.tangent(elevation)
+        return max(0.0, force - stiffness * elevation)
+
+    def tangent(self, elevation: float) -> tuple[float, float]:
+        """F₀ [N] and k [N/m] of the straight law F₀ − k · elevation that holds around an elevation [m]."""
+        if self.force is not None:
+            return self.force, self.stiffness
+        for (low, strong), (high, weak) in pairwise(self.law):
+            if low <= elevation < high:
+                slope = (strong - weak) / (high - low)
+                return strong + slope * low, slope
+        return self.law[0 if elevation < self.law[0][0] else -1][1], 0.0
+
+    def static_uplift(self, speed: float) -> float:
+        """[N] on a wire at its nominal height, at any speed."""
+        return self.contact_force(0.0)
+
+    def target_mean_force(self, speed: float) -> None:
+        """None: the law decides the mean force."""
+
+
+AnyPantograph = Pantograph | ElasticPantograph

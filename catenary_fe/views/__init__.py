@@ -1,13 +1,20 @@
 """Pictures. The only room that imports matplotlib; nothing is shown on a screen, axes are returned."""
 
 from catenary_fe.views.layout import plot_elasticity, plot_layout, plot_static_shape
+from catenary_fe.views.modes import plot_mode, plot_spectrum
 from catenary_fe.views.run import plot_contact_force, plot_dropper_forces, plot_support_uplift
+from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surface
 
 __all__ = [
     "plot_contact_force",
     "plot_dropper_forces",
     "plot_elasticity",
+    "plot_family",
     "plot_layout",
+    "plot_mode",
+    "plot_space_time",
+    "plot_spectrum",
     "plot_static_shape",
     "plot_support_uplift",
+    "plot_surface",
 ]

@@ -146,7 +146,7 @@ def test_several_pantographs_need_positions_that_fit(short_shape, pantograph):
 
 
 @pytest.mark.parametrize(
-    ("spans", "expected"), [(1, (1,)), (3, (2,)), (4, (2, 3)), (10, (4, 5, 6)), (20, (8, 9, 10, 11, 12, 13))]
+    ("spans", "expected"), [(1, (1,)), (3, (2,)), (4, (2, 3)), (10, (4, 5, 6)), (13, (5, 6, 7, 8))]
 )
 def test_spans_that_are_evaluated_unless_named(reference, spans, expected):
     line = reference.replace(

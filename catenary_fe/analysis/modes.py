@@ -1,0 +1,51 @@
+"""Modal analysis: eigenfrequencies and shapes of a line about its static state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.results.modes import Modes, WireShapes
+from catenary_fe.system import InputError
+
+_UP, _SLOPE_UP = 1, 3  # of a node's coordinates
+
+
+def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
+    """Eigenfrequencies and shapes about the static state, droppers taut; sparse, so that long lines work.
+
+    shape : the catenary in static equilibrium, with its mesh
+    count : how many modes, from the lowest; unset, and with no ``below``: 40
+    below : [Hz] all modes up to this frequency (with ``count``: at most so many)
+
+    Raises InputError for a count or frequency that is not positive, or a dropper that is slack at rest;
+    SolverError where the eigenvalue iteration fails.
+    """
+    from catenary_fe.fe.modal import linear_system, solve_eigen
+
+    if count is not None and count < 1:
+        raise InputError(f"modes: count = {count}: must be at least 1")
+    if below is not None and not (np.isfinite(below) and below > 0):
+        raise InputError(f"modes: below = {below!r} Hz: must be above 0")
+    system = linear_system(shape.catenary, shape.mesh, shape.installation)
+    nodes = shape.mesh.contact.x.size, shape.mesh.messenger.x.size
+    wanted = count or (40 if below is None else _expected(shape, below))
+    pairs = solve_eigen(system, nodes, wanted)
+    while below is not None and count is None and pairs.frequencies[-1] <= below:
+        if wanted >= system.free.size - 1:
+            break
+        wanted = min(int(1.3 * wanted) + 10, system.free.size - 1)
+        pairs = solve_eigen(system, nodes, wanted)
+    contact = WireShapes(shape.contact_wire_x, pairs.contact[:, :, _UP], pairs.contact[:, :, _SLOPE_UP])
+    messenger = WireShapes(
+        shape.messenger_wire_x, pairs.messenger[:, :, _UP], pairs.messenger[:, :, _SLOPE_UP]
+    )
+    modes = Modes(shape.catenary, pairs.frequencies, contact, messenger, pairs.along, pairs.damping_ratios)
+    return modes if below is None else modes.below(below)
+
+
+def _expected(shape: Shape, below: float) -> int:
+    """Modes of the two wires as strings with as many half-waves along the line, and some to spare."""
+    wires = shape.catenary.contact_wire, shape.catenary.messenger_wire
+    strings = sum(2 * shape.catenary.length * below / wire.wave_speed for wire in wires)
+    return int(1.1 * strings) + 10

@@ -1,0 +1,203 @@
+"""Eigenfrequencies and shapes of a line, and what kind of motion each of them is."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from catenary_fe.system import Catenary, InputError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+Symmetry = Literal["symmetric", "antisymmetric", "neither"]
+
+_ALIKE = 0.7  # correlation with the mirror image from which a shape counts as symmetric
+_SHAPES = 6  # half-waves in a bay that are told apart
+_SAMPLES = 24  # of a bay
+
+
+@dataclass(frozen=True)
+class ModeKind:
+    """What a mode looks like, found by computation.
+
+    symmetry : about the line's middle; 'neither' where bays far apart swing on their own
+    kind : 'whole line': the clamps move with the wires; 'bays': the wires swing between clamps that stay;
+        'along': the wires move along the track
+    half_waves : of the whole line, or of the bays (1: first shape, 2: second shape …)
+    """
+
+    symmetry: Symmetry
+    kind: Literal["whole line", "bays", "along"]
+    half_waves: int
+
+    def __str__(self) -> str:
+        if self.kind == "along":
+            return "along the track"
+        waves = "half-wave" if self.half_waves == 1 else "half-waves"
+        where = f"whole line, {self.half_waves} {waves}"
+        if self.kind == "bays":
+            where = f"bays in shape {self.half_waves}"
+        return f"{self.symmetry}, {where}" if self.symmetry != "neither" else where
+
+
+@dataclass(frozen=True)
+class WireShapes:
+    """Vertical shapes of one wire, mass-normalised over the whole line.
+
+    x : [m], shape (nodes,)
+    values : [1/√kg], shape (modes, nodes)
+    slopes : [1/(m √kg)], shape (modes, nodes)
+    """
+
+    x: Floats
+    values: Floats
+    slopes: Floats
+
+    def at(self, x: ArrayLike) -> Floats:
+        """[1/√kg], shape (modes, points): shapes at positions [m], cubic inside the elements."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        spline = CubicHermiteSpline(self.x, self.values.T, self.slopes.T, axis=0)
+        shapes: Floats = spline(np.asarray(x, dtype=float)).T
+        return shapes
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of a line about its static state, droppers taut, in rising order.
+
+    catenary : the line
+    frequencies : [Hz], shape (modes,)
+    contact, messenger : shapes of the wires
+    along : shape (modes,), share of the kinetic energy that moves along the track
+    damping_ratios : shape (modes,), of critical damping
+    """
+
+    catenary: Catenary
+    frequencies: Floats
+    contact: WireShapes
+    messenger: WireShapes
+    along: Floats
+    damping_ratios: Floats
+
+    def __len__(self) -> int:
+        return int(self.frequencies.size)
+
+    def below(self, frequency: float) -> Modes:
+        """Only the modes up to a frequency [Hz]."""
+        n = int(np.searchsorted(self.frequencies, frequency, side="right"))
+        contact, messenger = (
+            WireShapes(wire.x, wire.values[:n], wire.slopes[:n]) for wire in (self.contact, self.messenger)
+        )
+        return Modes(
+            self.catenary, self.frequencies[:n], contact, messenger, self.along[:n], self.damping_ratios[:n]
+        )
+
+    def compliance(self, positions: ArrayLike) -> Floats:
+        """[m/N], shape (points,): lift of the contact wire under a unit force there, Σ φ²/ω²."""
+        shapes = self.contact.at(positions)
+        compliance: Floats = (shapes**2 / (2 * np.pi * self.frequencies[:, None]) ** 2).sum(axis=0)
+        return compliance
+
+    def kind(self, mode: int) -> ModeKind:
+        """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
+        if not 0 <= mode < len(self):
+            raise InputError(f"mode {mode}: {len(self)} modes were computed, numbered from 0")
+        symmetry = self._symmetry(mode)
+        if self.along[mode] > 0.5:
+            return ModeKind(symmetry, "along", 0)
+        whole, bays = 0.0, np.zeros(_SHAPES)
+        for wire, x, shape in self._bay_samples(mode):
+            of_clamps, of_bays = _bay_energies(x, shape)
+            whole += wire * of_clamps
+            bays += wire * of_bays
+        if whole > bays.sum():
+            return ModeKind(symmetry, "whole line", self._half_waves(mode))
+        return ModeKind(symmetry, "bays", int(bays.argmax()) + 1)
+
+    def kinds(self) -> list[ModeKind]:
+        """What each mode looks like."""
+        return [self.kind(i) for i in range(len(self))]
+
+    def table(self) -> list[dict[str, Any]]:
+        """Rows of plain numbers and words, one a mode, numbered from 1."""
+        return [
+            {
+                "mode": i + 1,
+                "frequency_Hz": float(self.frequencies[i]),
+                "damping_ratio": float(self.damping_ratios[i]),
+                "kind": kind.kind,
+                "half_waves": kind.half_waves,
+                "symmetry": kind.symmetry,
+            }
+            for i, kind in enumerate(self.kinds())
+        ]
+
+    def count_by_kind(self) -> Counter[str]:
+        """How many modes swing how: 'whole line', 'bays 1', 'bays 2' …, 'along'."""
+        return Counter(f"bays {k.half_waves}" if k.kind == "bays" else k.kind for k in self.kinds())
+
+    def plot(self, mode: int, ax: Axes | None = None) -> Axes:
+        """Draw a mode (from 0). See :func:`catenary_fe.views.plot_mode`."""
+        from catenary_fe.views import plot_mode
+
+        return plot_mode(self, mode, ax=ax)
+
+    def _wires(self) -> tuple[tuple[float, WireShapes], tuple[float, WireShapes]]:
+        catenary = self.catenary
+        return (
+            (catenary.contact_wire.mass_per_length, self.contact),
+            (catenary.messenger_wire.mass_per_length, self.messenger),
+        )
+
+    def _symmetry(self, mode: int) -> Symmetry:
+        """By the correlation of the shape with its mirror image, weighted with the wires' masses."""
+        x = np.linspace(0, self.catenary.length, 40 * len(self.catenary.spans) + 1)
+        own = both = 0.0
+        for mass, wire in self._wires():
+            shape = np.interp(x, wire.x, wire.values[mode])
+            own += mass * float(shape @ shape)
+            both += mass * float(shape @ shape[::-1])
+        if both > _ALIKE * own:
+            return "symmetric"
+        return "antisymmetric" if both < -_ALIKE * own else "neither"
+
+    def _bay_samples(self, mode: int) -> list[tuple[float, Floats, Floats]]:
+        """For each bay, from clamp or support to the next: mass per length, positions, shape."""
+        catenary = self.catenary
+        supports, droppers = catenary.support_positions, catenary.dropper_positions
+        registered = np.array([i in (0, supports.size - 1) or s.steady_arm is not None
+                               for i, s in enumerate(catenary.supports)])  # fmt: skip
+        samples = []
+        for (mass, wire), held in zip(self._wires(), (supports[registered], supports), strict=True):
+            for a, b in pairwise(np.unique(np.concatenate([held, droppers]))):
+                x = np.linspace(a, b, _SAMPLES + 1)
+                samples.append((mass, x, np.interp(x, wire.x, wire.values[mode])))
+        return samples
+
+    def _half_waves(self, mode: int) -> int:
+        """Counted on the messenger and contact wire's common motion at the clamps, supports left out."""
+        at = self.catenary.dropper_positions
+        motion = np.zeros(at.size)
+        for mass, wire in self._wires():
+            motion += mass * np.interp(at, wire.x, wire.values[mode])
+        strong = motion[np.abs(motion) > 0.02 * np.abs(motion).max()]
+        return 1 + int((np.diff(np.sign(strong)) != 0).sum())
+
+
+def _bay_energies(x: Floats, shape: Floats) -> tuple[float, Floats]:
+    """Mean squares times length: of the straight line between a bay's ends, and of the sines on it."""
+    length, fraction = x[-1] - x[0], np.linspace(0.0, 1.0, x.size)
+    chord = shape[0] + (shape[-1] - shape[0]) * fraction
+    a, b = shape[0], shape[-1]
+    n = np.arange(1, _SHAPES + 1)
+    sines = np.sin(np.pi * np.outer(n, fraction))
+    amplitudes = 2 * (sines @ (shape - chord)) / (x.size - 1)
+    return length * (a * a + a * b + b * b) / 3, length * amplitudes**2 / 2
