@@ -162,7 +162,7 @@ def test_a_line_of_two_spans_is_too_short_for_a_run(reference, pantograph):
 
 
 def test_a_line_without_droppers(reference, pantograph):
-    """Two wires that do not know of each other: the contact wire's elasticity is a string's, F x (L-x)/(T L)."""
+    """Two wires apart: the contact wire's elasticity is that of a string, x (L-x)/(T L)."""
     span = cf.Span(length=60.0, droppers=())
     arm = cf.SteadyArm(stiffness=1e7, mass=0.3)
     line = reference.replace(
