@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.checks import check_speed
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import Modes
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Pantograph
 
 Floats = NDArray[np.float64]
+_PIECES = 8  # straight pieces of an elastic pantograph's law to try in a step
 
 
 def modal_run(
@@ -41,11 +41,12 @@ def modal_run(
 
     Raises InputError where the run does not fit on the line, no mode is left, or the contact has a damper.
     """
-    check_speed(speed)
+    if not (np.isfinite(speed) and speed > 0):  # no upper bound: studies go beyond the wave speed
+        raise InputError(f"speed = {speed!r} m/s: must be above 0")
     margin = float(np.diff(shape.catenary.support_positions).min()) / 6
     first = margin if start is None else start
     way = shape.catenary.length - margin - first if distance is None else distance
-    if not (0 <= first and way > 0 and first + way <= shape.catenary.length):
+    if not (first >= 0 and way > 0 and first + way <= shape.catenary.length):
         raise InputError(
             f"modal run from {first:g} m over {way:g} m: must lie on the line's {shape.catenary.length:g} m"
         )
@@ -136,16 +137,19 @@ class _Elastic:
         return self.push(sag, give, 0.0)
 
     def push(self, height: float, give: float, before: float) -> float:
-        """[N] at the step's end, for a wire that is ``height`` [m] high unpushed and gives way to the force."""
-        force, elevation = before, height
-        for _ in range(50):
-            elevation = height + give * force
-            at_zero, stiffness = self.pantograph.tangent(elevation)
+        """[N] at the step's end, on a wire that is ``height`` [m] high unpushed and gives way."""
+        force = before
+        for _ in range(_PIECES):
+            at_zero, stiffness = self.pantograph.tangent(height + give * force)
             met = max(0.0, (at_zero - stiffness * height) / (1 + stiffness * give))
             if abs(met - force) <= 1e-9 * max(1.0, met):
-                break
+                return met
             force = met
-        return met
+        # the straight pieces alternate; but the wire rises with the force, and the law falls
+        from scipy.optimize import brentq
+
+        law = self.pantograph.contact_force
+        return float(brentq(lambda f: law(height + give * f) - f, 0.0, law(height)))
 
 
 class _Chain:

@@ -8,6 +8,8 @@ import sys
 import click
 
 from catenary_fe.cli.design import form, info, static
+from catenary_fe.cli.modes import modes
+from catenary_fe.cli.paper import paper
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.validate import validate
@@ -30,7 +32,7 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, run, validate, schema):
+for command in (info, form, static, modes, run, paper, validate, schema):
     commands.add_command(command)
 
 

@@ -16,6 +16,7 @@ from catenary_fe.fe.wire import UP, WireItems
 from catenary_fe.system import AnyPantograph, ElasticPantograph, Pantograph
 
 Floats = NDArray[np.float64]
+_PIECES, _HALVINGS = 6, 40  # straight pieces of a law to try for the start, then halvings of its force
 _ALONG_TO_UP = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # Mass1D moves along its own first axis
 
 
@@ -154,7 +155,9 @@ def _in_cpp(model: Track, law: Callable[..., Any], name: str) -> object:
     return function
 
 
-def add_pantographs(model: Track, pantographs: Sequence[tuple[AnyPantograph, float]]) -> list[PantographItems]:
+def add_pantographs(
+    model: Track, pantographs: Sequence[tuple[AnyPantograph, float]]
+) -> list[PantographItems]:
     """Add pantographs of any kind, each with its uplift [N]."""
     chains = any(isinstance(p, Pantograph) for p, _ in pantographs)
     push = contact_function(model) if chains else None
@@ -200,27 +203,54 @@ class MovingContact:
         if changed:
             self._mbs.AssembleLTGLists()
 
-    def settle_laws(self) -> bool:
-        """Take the straight piece of each law where the wire is now; true if that is another one."""
+    def settle_laws(self, solve: Callable[[], None]) -> None:
+        """Bring static wire and the laws of elastic pantographs together.
+
+        solve : finds static equilibrium with the forces as they are set
+        """
+        laws = {
+            i: items.pantograph
+            for i, items in enumerate(self._pantographs)
+            if isinstance(items.pantograph, ElasticPantograph) and items.pantograph.law
+        }
+        for _ in range(_PIECES if laws else 0):
+            if not self._take_tangents(laws):
+                return
+            solve()
+        if laws:
+            # the straight pieces alternate; but the wire rises with the force, and the law falls
+            low, high = dict.fromkeys(laws, 0.0), {i: law.law[0][1] for i, law in laws.items()}
+            for _ in range(_HALVINGS):
+                middle = {i: (low[i] + high[i]) / 2 for i in laws}
+                for i, force in middle.items():
+                    self._set_law(i, (force, 0.0))
+                solve()
+                for i, law in laws.items():
+                    rising = law.contact_force(self._elevation_now(i)) > middle[i]
+                    (low if rising else high)[i] = middle[i]
+            self._take_tangents(laws)
+            solve()
+
+    def _take_tangents(self, laws: dict[int, ElasticPantograph]) -> bool:
+        """Take the straight piece of each law where the wire is now; true if one of them changed."""
         changed = False
-        for i, items in enumerate(self._pantographs):
-            if isinstance(items.pantograph, ElasticPantograph):
-                self._elevation[i] = self._elevation_now(i)
-                changed |= self._take_tangent(i, items.pantograph, self._elevation[i])
+        for i, law in laws.items():
+            self._elevation[i] = self._elevation_now(i)
+            changed |= self._set_law(i, law.tangent(self._elevation[i]))
         return changed
 
     def _follow_law(self, i: int, pantograph: ElasticPantograph) -> None:
         """Take the straight piece of the law where the wire is expected at the step's end."""
         before, now = self._elevation[i], self._elevation_now(i)
         self._elevation[i] = now
-        self._take_tangent(i, pantograph, 2 * now - before)
+        self._set_law(i, pantograph.tangent(2 * now - before))
 
     def _elevation_now(self, i: int) -> float:
         displacement = exu.OutputVariableType.Displacement
         return -float(self._mbs.GetObjectOutput(self._pantographs[i].connector, displacement)[UP])
 
-    def _take_tangent(self, i: int, pantograph: ElasticPantograph, elevation: float) -> bool:
-        tangent = pantograph.tangent(elevation)
+    def _set_law(self, i: int, tangent: tuple[float, float]) -> bool:
+        """Let a connector push with F₀ − k · elevation; true if it did not before."""
         if tangent == self._tangent[i]:
             return False
         self._tangent[i] = tangent

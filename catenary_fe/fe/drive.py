@@ -20,7 +20,6 @@ from catenary_fe.system import AnyPantograph, Catenary
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
-_LAW_ROUNDS = 20  # straight pieces of an elastic pantograph's law to try for the start
 
 
 @dataclass(frozen=True)
@@ -97,10 +96,7 @@ def drive(
     contact.move_to(trip.start, 0.0)
     raise_heads(model, items)
     solve_static(mbs, what="static contact at the start")
-    for _ in range(_LAW_ROUNDS):
-        if not contact.settle_laws():
-            break
-        solve_static(mbs, what="static contact at the start")
+    contact.settle_laws(lambda: solve_static(mbs, what="static contact at the start"))
     recorder = _Recorder(model, items, trip)
     step = trip.time.step
 

@@ -187,6 +187,8 @@ def _droppers(model: Model, along: Floats, *, pulled: bool = True) -> Any:
     block = along[:, None, None] * axial + (across if pulled else 0.0)
     blocks = np.block([[block, -block], [-block, block]])
     offset = COORDINATES * len(model.contact.nodes)
-    index = np.hstack([COORDINATES * lower[:, None] + [0, UP], offset + COORDINATES * upper[:, None] + [0, UP]])
+    index = np.hstack(
+        [COORDINATES * lower[:, None] + [0, UP], offset + COORDINATES * upper[:, None] + [0, UP]]
+    )
     rows, columns = np.repeat(index, 4, axis=1), np.tile(index, (1, 4))
     return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()

@@ -131,14 +131,16 @@ class ElasticPantograph(Parameters):
     @model_validator(mode="after")
     def _one_law(self) -> Self:
         if (self.force is None) == (not self.law):
-            raise ValueError("force and law: give exactly one, a force (with its stiffness) or a law of points")
+            raise ValueError(
+                "force and law: give exactly one, a force (with its stiffness) or a law of points"
+            )
         if self.law and self.stiffness:
             raise ValueError(f"stiffness = {self.stiffness:g} N/m has no effect beside a law; leave it out")
         for (low, strong), (high, weak) in pairwise(self.law):
             if high <= low or weak > strong:
                 raise ValueError(
-                    f"law: after {strong:g} N at {low:g} m comes {weak:g} N at {high:g} m; elevations must rise"
-                    " and forces must not"
+                    f"law: after {strong:g} N at {low:g} m comes {weak:g} N at {high:g} m; elevations must"
+                    " rise and forces must not"
                 )
         return self
 

@@ -14,7 +14,10 @@ def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax, (10.0, 3.0))
     catenary = modes.catenary
     x = np.linspace(0, catenary.length, 120 * len(catenary.spans) + 1)
-    wires = {"messenger wire": (modes.messenger, 1.0, MESSENGER), "contact wire": (modes.contact, -1.0, CONTACT)}
+    wires = {
+        "messenger wire": (modes.messenger, 1.0, MESSENGER),
+        "contact wire": (modes.contact, -1.0, CONTACT),
+    }
     largest = max(np.abs(wire.values[mode]).max() for wire in (modes.contact, modes.messenger))
     mark_supports(ax, catenary.support_positions)
     at = catenary.dropper_positions
@@ -24,7 +27,7 @@ def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
         ax.axhline(rest, color="#cccccc", linewidth=0.6)
         ax.plot(x, rest + 0.8 * _shape(wire, mode, x) / largest, color=colour, linewidth=1.3, label=name)
     ax.set_yticks([1.0, -1.0], ["messenger\nwire", "contact\nwire"])
-    ax.set_ylim(-2.1, 2.1)
+    ax.set_ylim(-2.1, 2.7)  # room for a legend
     ax.margins(x=0.01)
     title = f"mode {mode + 1}: {modes.frequencies[mode]:.3f} Hz, {modes.kind(mode)}"
     return finish(ax, "position along the line (m)", "", title)

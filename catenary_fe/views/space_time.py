@@ -51,7 +51,7 @@ def plot_space_time(
     assert figure is not None
     figure.colorbar(mesh, ax=ax, label=quantity, pad=0.02)
     if lines or len(supports):
-        ax.legend(loc="upper left", fontsize=7, framealpha=0.85)
+        ax.legend(loc="lower right", fontsize=7, framealpha=0.85)
     return ax
 
 

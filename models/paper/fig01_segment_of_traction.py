@@ -1,17 +1,19 @@
 """Fig. 1: segment of a simplified two-wire traction.
 
 Question: what is the structure whose waves are studied?
-Model: three spans of ``models/layouts/paper_cell.toml``, the layout object that figs. 9 to 15 compute with, drawn as
-it hangs after form finding. Tension and mass of the contact wire are the paper's, all other dimensions ours.
+Model: three spans of ``models/layouts/paper_cell.toml``, the layout object that figs. 9 to 15 compute with,
+drawn as it hangs after form finding. Tension and mass of the contact wire are the paper's, all other
+dimensions ours.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from paper_common import Numbers, paper_shape, publish, run_script
+
 import catenary_fe as cf
 from catenary_fe.views import plot_layout
-from paper_common import Numbers, paper_shape, publish, run_script
 
 
 def main(folder: Path) -> Numbers:
@@ -20,8 +22,10 @@ def main(folder: Path) -> Numbers:
     figure = plot_layout(line, shape, spans=[3, 4, 5]).figure
     sag = line.messenger_support_heights[0] - shape.messenger_wire_z.min()
     caption = (
-        f"Three of the {len(line.spans)} spans of the two-wire system, as it hangs: contact wire under 20 kN, messenger"
-        f" wire under {line.messenger_wire.tension / 1e3:g} kN, droppers, rigid supports of the messenger wire. The"
+        f"Three of the {len(line.spans)} spans of the two-wire system, as it hangs: contact wire under 20 kN,"
+        " messenger"
+        f" wire under {line.messenger_wire.tension / 1e3:g} kN, droppers, rigid supports of the messenger"
+        " wire. The"
         " print gives no dimensions; these are ours."
     )
     return publish(folder, __file__, figure, caption, _numbers(shape, sag))

@@ -1,7 +1,8 @@
 """Fig. 3: deflection over place and time under a constant force that moves at 320 km/h.
 
 Question: how does an unsupported wire answer a force that starts at t = 0 and moves below its wave speed?
-Parameters (paper): 20 kN, 1.33 kg/m, 200 N, 320 km/h = 0.725 c ("0.75 c" in the text), t = 0 … 0.5 s, no supports.
+Parameters (paper): 20 kN, 1.33 kg/m, 200 N, 320 km/h = 0.725 c ("0.75 c" in the text), t = 0 … 0.5 s, no
+supports.
 Model: closed form (eq. 4 and 5, factor 1/2ρc put right) and the ANCF wire.
 """
 
@@ -9,10 +10,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
-from catenary_fe.views import plot_space_time, plot_surface
 from matplotlib.figure import Figure
 from paper_common import (
     DURATION,
@@ -30,6 +28,10 @@ from paper_common import (
     wave_lines,
 )
 
+import catenary_fe as cf
+from catenary_fe import theory
+from catenary_fe.views import plot_space_time, plot_surface
+
 
 def main(folder: Path) -> Numbers:
     motion = run_force(cf.even_nodes(undisturbed_ends(SPEED), 0.25), speed=SPEED)
@@ -41,7 +43,11 @@ def main(folder: Path) -> Numbers:
         motion.x, motion.t, exact, title="closed form", ax=figure.add_subplot(grid[0, 0], projection="3d")
     )
     plot_surface(
-        motion.x, motion.t, motion.deflection, title="ANCF", ax=figure.add_subplot(grid[0, 1], projection="3d")
+        motion.x,
+        motion.t,
+        motion.deflection,
+        title="ANCF",
+        ax=figure.add_subplot(grid[0, 1], projection="3d"),
     )
     lines = wave_lines(DURATION, SPEED)
     below = [figure.add_subplot(grid[1, i]) for i in (0, 1)]
@@ -51,7 +57,8 @@ def main(folder: Path) -> Numbers:
     plot_space_time(motion.x, motion.t, off_by, quantity="difference (mm)", title=title, ax=below[1])
     under = float(motion.under_loads[-1, 0])
     caption = (
-        "200 N at 320 km/h (0.725 c) on the paper's wire without supports: the deflection under the force grows as"
+        "200 N at 320 km/h (0.725 c) on the paper's wire without supports: the deflection under the force"
+        " grows as"
         f" F t/(2ρc), to {1e3 * under:.0f} mm after 0.5 s. ANCF (0.25 m, 0.5 ms) and closed form differ by"
         f" {100 * off[-1]:.2f} % at 0.5 s (root mean square over the wire)."
     )

@@ -2,17 +2,15 @@
 
 Question: what does the travelling speed do to the shape under a moving force?
 Parameters (paper): 20 kN, 1.33 kg/m, 200 N, no supports.
-Model: closed form and the ANCF wire. At V = c the exact front is a jump; ANCF is run with 1 % of the force there and
-scaled, because a jump of 0.3 m is no small inclination on any mesh.
+Model: closed form and the ANCF wire. At V = c the exact front is a jump; ANCF is run with 1 % of the force
+there and scaled, because a jump of 0.3 m is no small inclination on any mesh.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
 from matplotlib.figure import Figure
 from paper_common import (
     COMPUTED,
@@ -28,6 +26,9 @@ from paper_common import (
     run_script,
     undisturbed_ends,
 )
+
+import catenary_fe as cf
+from catenary_fe import theory
 
 RATIOS = (0.0, 0.5, 1.0, 1.5, 2.0)
 LIGHT = 0.01  # of the force, at V = c
@@ -56,7 +57,8 @@ def main(folder: Path) -> Numbers:
     figure.axes[0].legend(fontsize=8, loc="upper right")
     figure.axes[-1].set_xlabel("position (m)")
     caption = (
-        "200 N on the paper's wire (20 kN, 1.33 kg/m) after 0.5 s, no supports. Below c the wire kinks under the force;"
+        "200 N on the paper's wire (20 kN, 1.33 kg/m) after 0.5 s, no supports. Below c the wire kinks under"
+        " the force;"
         " at V = c the slope there is infinite; above c nothing moves ahead of the force, which drags a cone."
     )
     return publish(folder, __file__, figure, caption, numbers)

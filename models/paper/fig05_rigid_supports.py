@@ -2,23 +2,20 @@
 
 Question: what do supports do to the deflection that grew without bounds in fig. 3?
 Parameters (paper): 20 kN, 1.33 kg/m, 200 N, 320 km/h, supports every 6 m from the start on, 0 … 0.5 s.
-Model: closed form (a rigid support decouples the bays; each is summed by images) and the ANCF wire with elements that
-shrink to 5 mm next to the supports, where the exact slope jumps and the wire's does not. The closed form is linear: it
-is compared with a run under 1 % of the force, scaled. Under all 200 N the tension rises in the kinks.
+Model: closed form (a rigid support decouples the bays; each is summed by images) and the ANCF wire with
+elements that shrink to 5 mm next to the supports, where the exact slope jumps and the wire's does not. The
+closed form is linear: it is compared with a run under 1 % of the force, scaled. Under all 200 N the tension
+rises in the kinks.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
-from catenary_fe.views import plot_space_time
 from matplotlib.figure import Figure
 from paper_common import (
     COMPUTED,
-    DURATION,
     FORCE,
     REFERENCE,
     SPEED,
@@ -29,6 +26,10 @@ from paper_common import (
     run_force,
     run_script,
 )
+
+import catenary_fe as cf
+from catenary_fe import theory
+from catenary_fe.views import plot_space_time
 
 SUPPORTS = np.arange(0.0, 61.0, 6.0)
 LIGHT = 0.01  # of the force
@@ -51,10 +52,14 @@ def main(folder: Path) -> Numbers:
     top, *rows = figure.subplots(4, 1, height_ratios=[2.2, 1, 1, 1])
     lines = {f"force, V = {SPEED:.1f} m/s": (SPEED * light.t, light.t)}
     title = "ANCF: the force leaves ringing bays in its wake"
-    plot_space_time(light.x, light.t, light.deflection / LIGHT, lines=lines, supports=SUPPORTS, title=title, ax=top)
+    plot_space_time(
+        light.x, light.t, light.deflection / LIGHT, lines=lines, supports=SUPPORTS, title=title, ax=top
+    )
     for ax, t, i, miss in zip(rows, TIMES, at, off, strict=True):
         ax.plot(light.x, 1e3 * light.deflection[i] / LIGHT, **COMPUTED, label="ANCF, 2 N, scaled")
-        ax.plot(usual, 1e3 * whole.deflection[i], color="#8fb3cc", linewidth=1.0, label="ANCF, 200 N, 0.125 m")
+        ax.plot(
+            usual, 1e3 * whole.deflection[i], color="#8fb3cc", linewidth=1.0, label="ANCF, 200 N, 0.125 m"
+        )
         ax.plot(light.x, 1e3 * exact[i], **REFERENCE, label="closed form")
         ax.plot(SUPPORTS, 0 * SUPPORTS, "k^", markersize=4)
         ax.set_title(f"t = {t:g} s: difference {100 * miss:.2f} %", fontsize=9, loc="left")
@@ -64,8 +69,10 @@ def main(folder: Path) -> Numbers:
     rows[-1].set_xlabel("position (m)")
     caption = (
         "200 N at 320 km/h over rigid supports every 6 m: the deflection drops from decimetres to"
-        f" {1e3 * float(np.abs(exact).max()):.0f} mm, and the bays ring on. Closed form and ANCF (linear: 2 N, scaled)"
-        f" differ by at most {100 * max(off):.2f} %; under all 200 N on a usual mesh (0.125 m) by {100 * stiffened:.1f} %."
+        f" {1e3 * float(np.abs(exact).max()):.0f} mm, and the bays ring on. Closed form and ANCF (linear: 2"
+        " N, scaled)"
+        f" differ by at most {100 * max(off):.2f} %; under all 200 N on a usual mesh (0.125 m) by"
+        f" {100 * stiffened:.1f} %."
     )
     numbers = {
         "largest difference, linear (%)": 100 * max(off),

@@ -1,8 +1,8 @@
 """Fig. 7: a wire with considerable bending stiffness.
 
 Question: what does bending add to the waves of fig. 3?
-Parameters (paper): 20 kN, 1.33 kg/m, S = 200 kN m², 200 N, 320 km/h, no supports, 0 … 0.5 s. Pinned ends at -90 m and
-130 m (ours): far enough to send back little.
+Parameters (paper): 20 kN, 1.33 kg/m, S = 200 kN m², 200 N, 320 km/h, no supports, 0 … 0.5 s. Pinned ends at
+-90 m and 130 m (ours): far enough to send back little.
 Model: ANCF wire and method of lines (eq. 8 applied twice, its h² put right).
 """
 
@@ -10,10 +10,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
-from catenary_fe.views import plot_space_time
 from matplotlib.figure import Figure
 from paper_common import (
     COMPUTED,
@@ -31,6 +28,10 @@ from paper_common import (
     run_script,
     wave_lines,
 )
+
+import catenary_fe as cf
+from catenary_fe import theory
+from catenary_fe.views import plot_space_time
 
 ENDS = (-90.0, 130.0)  # m
 
@@ -68,13 +69,17 @@ def main(folder: Path) -> Numbers:
         ax.plot(x, 1e3 * string, color="#999999", linewidth=0.9, label="string, S = 0")
         ax.set_ylabel("deflection (mm)")
         ax.grid(color="#dddddd", linewidth=0.6)
-    middle.set_title(f"t = {DURATION:g} s: ANCF and lines differ by {100 * off:.2f} %", fontsize=9, loc="left")
+    middle.set_title(
+        f"t = {DURATION:g} s: ANCF and lines differ by {100 * off:.2f} %", fontsize=9, loc="left"
+    )
     middle.legend(fontsize=8, loc="upper left")
     bottom.set(ylim=(-12, 12), xlabel="position (m)")
     bottom.set_title("the same, enlarged", fontsize=9, loc="left")
     caption = (
-        "200 N at 320 km/h on the paper's wire with S = 200 kN m²: short waves are faster than the string's and run"
-        f" ahead of its front, by more than 1 mm up to {reach:.0f} m ahead after 0.5 s. ANCF (0.25 m, 0.25 ms) and"
+        "200 N at 320 km/h on the paper's wire with S = 200 kN m²: short waves are faster than the string's"
+        " and run"
+        f" ahead of its front, by more than 1 mm up to {reach:.0f} m ahead after 0.5 s. ANCF (0.25 m, 0.25"
+        " ms) and"
         f" method of lines (0.2 m) differ by {100 * off:.2f} %."
     )
     numbers = {

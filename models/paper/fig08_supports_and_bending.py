@@ -1,8 +1,9 @@
 """Fig. 8: supports every 6 m and bending stiffness, below and at the wave speed, regular and mistuned.
 
 Question: what is left of the decoupled bays of fig. 5 when the wire bends?
-Parameters (paper): 20 kN, 1.33 kg/m, 200 N, supports every 6 m; S = 200 kN m² as in fig. 7. Speeds 320 km/h and c. The
-supports run on behind the start, which is above one of them. Mistuned: each support moved by up to 1 m (ours).
+Parameters (paper): 20 kN, 1.33 kg/m, 200 N, supports every 6 m; S = 200 kN m² as in fig. 7. Speeds 320 km/h
+and c. The supports run on behind the start, which is above one of them. Mistuned: each support moved by up to
+1 m (ours).
 Model: ANCF wire; method of lines (0.2 and 0.1 m, extrapolated to zero) at 0.5 s.
 """
 
@@ -10,10 +11,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
-from catenary_fe.views import plot_space_time
 from matplotlib.figure import Figure
 from paper_common import (
     COMPUTED,
@@ -33,12 +31,17 @@ from paper_common import (
 )
 from scipy.interpolate import CubicSpline
 
+import catenary_fe as cf
+from catenary_fe import theory
+from catenary_fe.views import plot_space_time
+
 REGULAR = np.arange(-60.0, 97.0, 6.0)
 ENDS = (REGULAR[0], REGULAR[-1])
 
 
 def mistuned() -> Floats:
-    """The same supports, each but the ends and the one at the start moved by up to 1 m, on a grid of 0.2 m."""
+    """The same supports, each but the ends and the one at the start moved by up to 1 m, on a grid of 0.2"
+    " m."""
     moved = np.round(np.random.default_rng(8).uniform(-1, 1, REGULAR.size) / 0.2) * 0.2
     moved[[0, -1]], moved[REGULAR == 0] = 0.0, 0.0
     return np.round(REGULAR + moved, 9)
@@ -97,8 +100,10 @@ def main(folder: Path) -> Numbers:
         )
     curves[0].legend(fontsize=7, loc="lower left")
     caption = (
-        "200 N over rigid supports every 6 m, S = 200 kN m². Bending carries waves over the supports: they run ahead of"
-        " the force even at V = c, and the wake reaches behind the start. Mistuned: supports moved by up to 1 m. The"
+        "200 N over rigid supports every 6 m, S = 200 kN m². Bending carries waves over the supports: they"
+        " run ahead of"
+        " the force even at V = c, and the wake reaches behind the start. Mistuned: supports moved by up to 1"
+        " m. The"
         " maps' colours end at 3 mm."
     )
     return publish(folder, __file__, figure, caption, numbers)

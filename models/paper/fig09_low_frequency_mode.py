@@ -1,19 +1,20 @@
 """Fig. 9: a symmetric low-frequency mode of the two-wire system.
 
 Question: how does the two-wire system swing at low frequency?
-Model: ``models/layouts/paper_cell.toml`` about its static state, droppers taut. Whether a mode is symmetric, and whether
-the whole line or its bays swing, is computed from its shape (``Modes.kind``).
+Model: ``models/layouts/paper_cell.toml`` about its static state, droppers taut. Whether a mode is symmetric,
+and whether the whole line or its bays swing, is computed from its shape (``Modes.kind``).
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe.views import plot_mode, plot_spectrum
 from matplotlib.figure import Figure
 from paper_common import Numbers, paper_shape, publish, run_script
+
+import catenary_fe as cf
+from catenary_fe.views import plot_mode, plot_spectrum
 
 
 def main(folder: Path) -> Numbers:
@@ -24,19 +25,25 @@ def main(folder: Path) -> Numbers:
     figure = Figure(figsize=(10.0, 9.0), layout="constrained")
     top, middle, bottom = figure.subplots(3, 1, height_ratios=[1, 1, 1.3])
     plot_mode(modes, lowest, ax=top)
-    top.legend(fontsize=8, loc="upper right")
+    top.legend(fontsize=8, loc="upper right", ncols=3)
     plot_mode(modes, per_span, ax=middle)
     plot_spectrum(modes, ax=bottom)
-    shares = [float(np.sum(wire.values[lowest] ** 2 * np.gradient(wire.x))) for wire in (modes.contact, modes.messenger)]
+    squares = [
+        float(np.trapezoid(wire.values[lowest] ** 2, wire.x)) for wire in (modes.contact, modes.messenger)
+    ]
     caption = (
-        f"The lowest symmetric mode, {modes.frequencies[lowest]:.3f} Hz: both wires swing together, and within each"
-        " span the shape is that of a string. Below: the symmetric mode with a half-wave in (almost) every span, and all"
-        " modes up to 20 Hz by what they are."
+        f"The lowest symmetric mode, {modes.frequencies[lowest]:.3f} Hz: both wires swing together, and"
+        " within each"
+        " span the shape is that of a string. It is not quite symmetric: the wires are fixed at the left end"
+        " and pulled by"
+        " weights at the right one. Below: a symmetric mode whose spans alternate, and all modes up to 20 Hz"
+        " by what"
+        " they are."
     )
     numbers = {
         "lowest symmetric mode (Hz)": float(modes.frequencies[lowest]),
         "its half-waves along the line": kinds[lowest].half_waves,
-        "its mean square on the messenger wire over that on the contact wire": shares[1] / shares[0],
+        "its mean square on the messenger wire over that on the contact wire": squares[1] / squares[0],
         "modes of the whole line below 20 Hz": modes.count_by_kind()["whole line"],
         "modes of bays in first shape below 20 Hz": modes.count_by_kind()["bays 1"],
         "modes of bays in second shape below 20 Hz": modes.count_by_kind()["bays 2"],

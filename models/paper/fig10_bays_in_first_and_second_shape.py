@@ -1,20 +1,21 @@
 """Fig. 10: symmetric modes of medium and of elevated frequency.
 
 Question: when do the bays between droppers swing on their own, in their first shape, in their second?
-Model: as fig. 9. Of the symmetric modes of each kind the one is drawn whose energy lies most in the bays: the ends of
-the bays, the clamps, move least.
+Model: as fig. 9. Of the symmetric modes of each kind the one is drawn whose energy lies most in the bays: the
+ends of the bays, the clamps, move least.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
-from catenary_fe.views import plot_mode
 from matplotlib.figure import Figure
 from paper_common import STRING, Numbers, paper_shape, publish, run_script
+
+import catenary_fe as cf
+from catenary_fe import theory
+from catenary_fe.views import plot_mode
 
 
 def clamp_motion(modes: cf.Modes, mode: int) -> float:
@@ -43,7 +44,7 @@ def main(folder: Path) -> Numbers:
         numbers[f"one bay of {bay:g} m alone, shape {shape} (Hz)"] = float(alone[shape - 1])
         first = next(i for i, k in enumerate(kinds) if (k.kind, k.half_waves) == ("bays", shape))
         numbers[f"first mode with bays in shape {shape} (Hz)"] = float(modes.frequencies[first])
-    figure.axes[0].legend(fontsize=8, loc="upper right")
+    figure.axes[0].legend(fontsize=8, loc="upper right", ncols=3)
     caption = (
         f"Symmetric modes in which the bays swing between clamps that stay: in their first shape at"
         f" {numbers['drawn mode in shape 1 (Hz)']:.2f} Hz, in their second at"

@@ -1,7 +1,7 @@
 """What the paper's figures share: the paper's wire and cell, and how a figure is published.
 
-Source of all figures: "Selected problems of wave phenomena in catenaries". What the text does not say is chosen
-here, in one place, and called ours.
+Source of all figures: "Selected problems of wave phenomena in catenaries". What the text does not say is
+chosen here, in one place, and called ours.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import catenary_fe as cf
 import numpy as np
-from catenary_fe import theory
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+
+import catenary_fe as cf
+from catenary_fe import theory
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -74,7 +75,10 @@ def wave_lines(duration: float, speed: float) -> dict[str, tuple[Floats, Floats]
     t = np.array([0.0, duration])
     return {
         f"force, V = {speed:.1f} m/s": (speed * t, t),
-        f"wave speed, ±c = ±{C:.1f} m/s": (np.array([-C * duration, 0.0, C * duration]), duration * np.array([1, 0, 1])),
+        f"wave speed, ±c = ±{C:.1f} m/s": (
+            np.array([-C * duration, 0.0, C * duration]),
+            duration * np.array([1, 0, 1]),
+        ),
     }
 
 
@@ -93,11 +97,20 @@ def paper_shape(mesh: cf.MeshSettings | None = None) -> cf.Shape:
     return cf.find_form(cf.load_catenary(CELL), mesh)
 
 
+def uplift_map(run: cf.Run, window: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
+    """Places [m], times [s] within a window, and uplift [m] of the contact wire above its static shape."""
+    data = run.data
+    t = data["wire_time"].values
+    inside = (t >= window[0] - 1e-9) & (t <= window[1] + 1e-9)
+    uplift = data["contact_wire_height"].values - data["static_contact_wire_height"].values
+    return data["x"].values, t[inside], uplift[inside]
+
+
 def publish(folder: Path | str, script: str, figure: Figure, caption: str, numbers: Numbers) -> Numbers:
     """Write the picture, and beside it a JSON file with caption and numbers; returns the numbers."""
     folder, name = Path(folder), Path(script).stem
     folder.mkdir(parents=True, exist_ok=True)
-    figure.savefig(folder / f"{name}.png", dpi=130)
+    figure.savefig(folder / f"{name}.png", dpi=130, metadata={"Software": None})
     facts = {"caption": caption, "numbers": {key: float(value) for key, value in numbers.items()}}
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
     (folder / f"{name}.json").write_text(text, encoding="utf-8")
