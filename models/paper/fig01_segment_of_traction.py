@@ -23,10 +23,8 @@ def main(folder: Path) -> Numbers:
     sag = line.messenger_support_heights[0] - shape.messenger_wire_z.min()
     caption = (
         f"Three of the {len(line.spans)} spans of the two-wire system, as it hangs: contact wire under 20 kN,"
-        " messenger"
-        f" wire under {line.messenger_wire.tension / 1e3:g} kN, droppers, rigid supports of the messenger"
-        " wire. The"
-        " print gives no dimensions; these are ours."
+        f" messenger wire under {line.messenger_wire.tension / 1e3:g} kN, droppers, rigid supports of the"
+        " messenger wire. The print gives no dimensions; these are ours."
     )
     return publish(folder, __file__, figure, caption, _numbers(shape, sag))
 

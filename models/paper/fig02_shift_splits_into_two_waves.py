@@ -44,9 +44,8 @@ def main(folder: Path) -> Numbers:
     )
     caption = (
         f"The paper's wire (20 kN, 1.33 kg/m, c = {C:.1f} m/s) let go from a shift of {1e3 * HEIGHT:g} mm on"
-        " 10 m: two waves of half"
-        " the height run apart at ±c. ANCF and d'Alembert's solution (eq. 3) differ by at most"
-        f" {100 * max(off):.2f} %."
+        " 10 m: two waves of half the height run apart at ±c. ANCF and d'Alembert's solution (eq. 3) differ"
+        f" by at most {100 * max(off):.2f} %."
     )
     numbers = {
         "largest difference to the closed form (%)": 100 * max(off),

@@ -58,9 +58,8 @@ def main(folder: Path) -> Numbers:
     under = float(motion.under_loads[-1, 0])
     caption = (
         "200 N at 320 km/h (0.725 c) on the paper's wire without supports: the deflection under the force"
-        " grows as"
-        f" F t/(2ρc), to {1e3 * under:.0f} mm after 0.5 s. ANCF (0.25 m, 0.5 ms) and closed form differ by"
-        f" {100 * off[-1]:.2f} % at 0.5 s (root mean square over the wire)."
+        f" grows as F t/(2ρc), to {1e3 * under:.0f} mm after 0.5 s. ANCF (0.25 m, 0.5 ms) and closed form"
+        f" differ by {100 * off[-1]:.2f} % at 0.5 s (root mean square over the wire)."
     )
     numbers = {
         "difference at 0.5 s (%)": 100 * off[-1],

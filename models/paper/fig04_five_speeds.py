@@ -58,8 +58,8 @@ def main(folder: Path) -> Numbers:
     figure.axes[-1].set_xlabel("position (m)")
     caption = (
         "200 N on the paper's wire (20 kN, 1.33 kg/m) after 0.5 s, no supports. Below c the wire kinks under"
-        " the force;"
-        " at V = c the slope there is infinite; above c nothing moves ahead of the force, which drags a cone."
+        " the force; at V = c the slope there is infinite; above c nothing moves ahead of the force, which"
+        " drags a cone."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

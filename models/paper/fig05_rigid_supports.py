@@ -70,8 +70,7 @@ def main(folder: Path) -> Numbers:
     caption = (
         "200 N at 320 km/h over rigid supports every 6 m: the deflection drops from decimetres to"
         f" {1e3 * float(np.abs(exact).max()):.0f} mm, and the bays ring on. Closed form and ANCF (linear: 2"
-        " N, scaled)"
-        f" differ by at most {100 * max(off):.2f} %; under all 200 N on a usual mesh (0.125 m) by"
+        f" N, scaled) differ by at most {100 * max(off):.2f} %; under all 200 N on a usual mesh (0.125 m) by"
         f" {100 * stiffened:.1f} %."
     )
     numbers = {

@@ -21,10 +21,8 @@ def main(folder: Path) -> Numbers:
     figure = plot_layout(line, shape, spans=[4]).figure
     caption = (
         f"One cell: a span of {span.length:g} m with {len(span.droppers)} droppers 8 m apart, across the"
-        " supports too,"
-        f" so that all bays of the contact wire are equal; system height {line.system_height:g} m. Contact"
-        " wire 20 kN,"
-        " 1.33 kg/m (paper); all other dimensions are ours."
+        f" supports too, so that all bays of the contact wire are equal; system height {line.system_height:g}"
+        " m. Contact wire 20 kN, 1.33 kg/m (paper); all other dimensions are ours."
     )
     numbers = {
         "span (m)": span.length,

@@ -77,10 +77,8 @@ def main(folder: Path) -> Numbers:
     bottom.set_title("the same, enlarged", fontsize=9, loc="left")
     caption = (
         "200 N at 320 km/h on the paper's wire with S = 200 kN m²: short waves are faster than the string's"
-        " and run"
-        f" ahead of its front, by more than 1 mm up to {reach:.0f} m ahead after 0.5 s. ANCF (0.25 m, 0.25"
-        " ms) and"
-        f" method of lines (0.2 m) differ by {100 * off:.2f} %."
+        f" and run ahead of its front, by more than 1 mm up to {reach:.0f} m ahead after 0.5 s. ANCF (0.25 m,"
+        f" 0.25 ms) and method of lines (0.2 m) differ by {100 * off:.2f} %."
     )
     numbers = {
         "difference between ANCF and lines at 0.5 s (%)": 100 * off,

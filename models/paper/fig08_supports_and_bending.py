@@ -101,10 +101,8 @@ def main(folder: Path) -> Numbers:
     curves[0].legend(fontsize=7, loc="lower left")
     caption = (
         "200 N over rigid supports every 6 m, S = 200 kN m². Bending carries waves over the supports: they"
-        " run ahead of"
-        " the force even at V = c, and the wake reaches behind the start. Mistuned: supports moved by up to 1"
-        " m. The"
-        " maps' colours end at 3 mm."
+        " run ahead of the force even at V = c, and the wake reaches behind the start. Mistuned: supports"
+        " moved by up to 1 m. The maps' colours end at 3 mm."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

@@ -33,12 +33,9 @@ def main(folder: Path) -> Numbers:
     ]
     caption = (
         f"The lowest symmetric mode, {modes.frequencies[lowest]:.3f} Hz: both wires swing together, and"
-        " within each"
-        " span the shape is that of a string. It is not quite symmetric: the wires are fixed at the left end"
-        " and pulled by"
-        " weights at the right one. Below: a symmetric mode whose spans alternate, and all modes up to 20 Hz"
-        " by what"
-        " they are."
+        " within each span the shape is that of a string. It is not quite symmetric: the wires are fixed at"
+        " the left end and pulled by weights at the right one. Below: a symmetric mode whose spans"
+        " alternate, and all modes up to 20 Hz by what they are."
     )
     numbers = {
         "lowest symmetric mode (Hz)": float(modes.frequencies[lowest]),

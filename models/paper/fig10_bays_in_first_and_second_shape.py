@@ -46,7 +46,7 @@ def main(folder: Path) -> Numbers:
         numbers[f"first mode with bays in shape {shape} (Hz)"] = float(modes.frequencies[first])
     figure.axes[0].legend(fontsize=8, loc="upper right", ncols=3)
     caption = (
-        f"Symmetric modes in which the bays swing between clamps that stay: in their first shape at"
+        "Symmetric modes in which the bays swing between clamps that stay: in their first shape at"
         f" {numbers['drawn mode in shape 1 (Hz)']:.2f} Hz, in their second at"
         f" {numbers['drawn mode in shape 2 (Hz)']:.2f} Hz. A bay of 8 m alone, pinned, has {alone[0]:.2f} and"
         f" {alone[1]:.2f} Hz."

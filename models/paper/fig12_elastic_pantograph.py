@@ -86,11 +86,9 @@ def main(folder: Path) -> Numbers:
         numbers[f"force at 0.5 s, {name} (N)"] = float(force[-1])
     caption = (
         "An elastic pantograph, F = max(0, 200 N - 1 kN/m u), at 320 km/h on the paper's wire without"
-        " supports: the"
-        " deflection stays bounded. The string's answer fills the cone between ±c; with S = 200 kN m² waves"
-        " run in front"
-        " of and behind it. Right: another law, 200 N up to 50 mm, 0 from 150 mm on. The"
-        " maps' colours end at 100 mm."
+        " supports: the deflection stays bounded. The string's answer fills the cone between ±c; with S ="
+        " 200 kN m² waves run in front of and behind it. Right: another law, 200 N up to 50 mm, 0 from 150"
+        " mm on. The maps' colours end at 100 mm."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

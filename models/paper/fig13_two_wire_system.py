@@ -78,10 +78,8 @@ def main(folder: Path) -> Numbers:
     )
     caption = (
         "An elastic pantograph at 320 km/h on the contact wire of the two-wire system: the uplift stays"
-        " within"
-        f" {numbers['largest uplift under the pantograph, S = 195 N m² (mm)']:.0f} mm, and every dropper"
-        " (thin lines)"
-        " reflects part of the waves. A small bending stiffness changes little."
+        f" within {numbers['largest uplift under the pantograph, S = 195 N m² (mm)']:.0f} mm, and every"
+        " dropper (thin lines) reflects part of the waves. A small bending stiffness changes little."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

@@ -68,8 +68,7 @@ def main(folder: Path) -> Numbers:
     bottom.margins(y=0.2)
     caption = (
         f"Two elastic pantographs {DISTANCE:g} m apart at 320 km/h on the two-wire system: the trailing one"
-        " runs in the"
-        f" leading one's wake (σ {numbers['standard deviation, trailing (N)']:.1f} N against"
+        f" runs in the leading one's wake (σ {numbers['standard deviation, trailing (N)']:.1f} N against"
         f" {numbers['standard deviation, alone (N)']:.1f} N alone), and sends waves forward that reach the"
         " leading one."
     )

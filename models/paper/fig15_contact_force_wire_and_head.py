@@ -36,17 +36,8 @@ def balance(run: cf.Run) -> Floats:
     return force
 
 
-def main(folder: Path) -> Numbers:
-    run = cf.simulate(paper_shape(), [PANTOGRAPH], speed=SPEED)
-    inside = run.window(0)
-    x, force, wire = (
-        run.data[name].values[0][inside] for name in ("position", "contact_force", "wire_height")
-    )
-    head = run.data["mass_height"].values[0, 0][inside]
-    smooth = [
-        low_pass(v, run.step, kind="zero-phase")[inside]
-        for v in (run.data["contact_force"].values[0], balance(run))
-    ]
+def draw(x: Floats, force: Floats, wire: Floats, head: Floats, smooth: list[Floats]) -> Figure:
+    """Force and heights along two spans; force against distance of head and wire, and against wire height."""
     figure = Figure(figsize=(12.0, 8.5), layout="constrained")
     top, middle, low = figure.add_gridspec(3, 1, height_ratios=[1, 1, 1.25])
     forces, heights = figure.add_subplot(top), figure.add_subplot(middle)
@@ -82,13 +73,27 @@ def main(folder: Path) -> Numbers:
         ax.legend(fontsize=8, loc="best", ncols=3)
     for ax in (forces, heights, law, loops):
         ax.grid(color="#dddddd", linewidth=0.6)
+    return figure
+
+
+def main(folder: Path) -> Numbers:
+    run = cf.simulate(paper_shape(), [PANTOGRAPH], speed=SPEED)
+    inside = run.window(0)
+    x, force, wire = (
+        run.data[name].values[0][inside] for name in ("position", "contact_force", "wire_height")
+    )
+    head = run.data["mass_height"].values[0, 0][inside]
+    smooth = [
+        low_pass(v, run.step, kind="zero-phase")[inside]
+        for v in (run.data["contact_force"].values[0], balance(run))
+    ]
+    figure = draw(x, force, wire, head, smooth)
     statistics = run.contact_force_statistics()[0]
     caption = (
         "Two-mass pantograph of EN 50318:2002 at 250 km/h on the two-wire system, spans 4 and 5: contact"
-        " force, wire and"
-        " head height. The force is the contact's spring times the distance of head and wire (left), and it"
-        " is what the"
-        " masses' motion asks for (dashed); on the wire's height it depends in loops, one a span (right)."
+        " force, wire and head height. The force is the contact's spring times the distance of head and wire"
+        " (left), and it is what the masses' motion asks for (dashed); on the wire's height it depends in"
+        " loops, one a span (right)."
     )
     missing = float(np.sqrt(np.mean((smooth[0] - smooth[1]) ** 2)))
     numbers = {

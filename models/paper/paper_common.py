@@ -74,8 +74,8 @@ def wave_lines(duration: float, speed: float) -> dict[str, tuple[Floats, Floats]
     """Where the force and the fronts of the string's waves run."""
     t = np.array([0.0, duration])
     return {
-        f"force, V = {speed:.1f} m/s": (speed * t, t),
-        f"wave speed, ±c = ±{C:.1f} m/s": (
+        f"force, {speed:.1f} m/s": (speed * t, t),
+        f"±c, {C:.1f} m/s": (
             np.array([-C * duration, 0.0, C * duration]),
             duration * np.array([1, 0, 1]),
         ),

@@ -100,8 +100,7 @@ def main(folder: Path) -> Numbers:
     }
     caption = (
         "Without supports the deflection grows with time at any speed (0.5 s here), and falls only beyond c."
-        " Supports"
-        " and the two-wire system bound it; both answer most strongly around the wave speed"
+        " Supports and the two-wire system bound it; both answer most strongly around the wave speed"
         f" (two-wire: V = {numbers['two-wire, V/c of the largest']:.2f} c)."
     )
     return publish(folder, __file__, ax.figure, caption, numbers)

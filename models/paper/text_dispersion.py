@@ -76,10 +76,9 @@ def main(folder: Path) -> Numbers:
         ax.grid(color="#dddddd", linewidth=0.6)
     worst = max(v for key, v in numbers.items() if "largest difference" in key)
     caption = (
-        "A pulse let go: the string splits it, the bending stiffness of copper hardly changes that, 200 kN m²"
-        " tears it"
-        " apart. Phase velocities measured from the ANCF wire meet the dispersion relation within"
-        f" {worst:.2f} %."
+        "A pulse let go: the string splits it, the bending stiffness of copper hardly changes that, 200 kN"
+        " m² tears it apart. Phase velocities measured from the ANCF wire meet the dispersion relation"
+        f" within {worst:.2f} %."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

@@ -51,9 +51,9 @@ def main(folder: Path) -> Numbers:
     )
     caption = (
         f"Two elastic pantographs at 320 km/h on the two-wire system. Alone, σ is {alone:.1f} N; the trailing"
-        " one has"
-        f" between {trailing.min():.1f} N at {DISTANCES[trailing.argmin()]:g} m and {trailing.max():.1f} N at"
-        f" {DISTANCES[trailing.argmax()]:g} m, the leading one up to {leading.max():.1f} N."
+        f" one has between {trailing.min():.1f} N at {DISTANCES[trailing.argmin()]:g} m and"
+        f" {trailing.max():.1f} N at {DISTANCES[trailing.argmax()]:g} m, the leading one up to"
+        f" {leading.max():.1f} N."
     )
     numbers = {
         "alone (N)": alone,

@@ -71,10 +71,9 @@ def main(folder: Path) -> Numbers:
     )
     caption = (
         "Motion of each 6 m bay (S = 200 kN m², 200 N at 320 km/h) while the force runs 44 m. Bays of equal"
-        " length pass"
-        f" waves on; irregular ones hold them back: more than 60 m behind the start {off / regular:.2f} of"
-        " the regular"
-        " motion is left with supports moved by up to 1 m, while single bays swing more."
+        " length pass waves on; irregular ones hold them back: more than 60 m behind the start"
+        f" {off / regular:.2f} of the regular motion is left with supports moved by up to 1 m, while single"
+        " bays swing more."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

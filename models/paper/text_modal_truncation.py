@@ -64,9 +64,8 @@ def main(folder: Path) -> Numbers:
     at_20 = numbers["elastic pantograph: error of the wire's height, 20 Hz (%)"]
     caption = (
         f"Runs at 250 km/h on the two-wire system as sums of eigenforms. Cut at 20 Hz ({counts[2]} modes),"
-        " the wire's"
-        f" height over the head misses {at_20:.0f} % of"
-        " its deviation with an elastic pantograph; the error falls with the cut-off towards the full run."
+        f" the wire's height over the head misses {at_20:.0f} % of its deviation with an elastic pantograph;"
+        " the error falls with the cut-off towards the full run."
     )
     return publish(folder, __file__, figure, caption, numbers)
 

@@ -66,8 +66,8 @@ def main(folder: Path) -> Numbers:
     ahead, behind = FREQUENCY / (1 - SPEED / C), FREQUENCY / (1 + SPEED / C)
     caption = (
         "F = 200 N + 100 N sin(2π · 10 Hz · t) at 320 km/h on the paper's wire: short waves ahead"
-        f" ({ahead:.1f} Hz for the"
-        f" wire), long ones behind ({behind:.1f} Hz). ANCF and closed form differ by {100 * off:.2f} %."
+        f" ({ahead:.1f} Hz for the wire), long ones behind ({behind:.1f} Hz). ANCF and closed form differ by"
+        f" {100 * off:.2f} %."
     )
     numbers = {
         "difference at 0.5 s (%)": 100 * off,

@@ -56,10 +56,10 @@ def test_a_softer_law_gives_a_larger_force(short_shape):
         cf.simulate(short_shape, [cf.ElasticPantograph(force=200.0, stiffness=k)], speed=SPEED)
         .contact_force_statistics()[0]
         .mean
-        for k in (0.0, 500.0, 2000.0)
+        for k in (0.0, 2000.0)
     ]
     assert means[0] == pytest.approx(200.0)
-    assert means[0] > means[1] > means[2]
+    assert means[0] > means[1] + 50.0
 
 
 def test_beside_a_pantograph_of_masses_and_in_a_file(short_shape, pantograph, tmp_path):
