@@ -8,8 +8,6 @@ from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modes import Modes, WireShapes
 from catenary_fe.system import InputError
 
-_UP, _SLOPE_UP = 1, 3  # of a node's coordinates
-
 
 def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
     """Eigenfrequencies and shapes about the static state, droppers taut; sparse, so that long lines work.
@@ -28,17 +26,18 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
     if below is not None and not (np.isfinite(below) and below > 0):
         raise InputError(f"modes: below = {below!r} Hz: must be above 0")
     system = linear_system(shape.catenary, shape.mesh, shape.installation)
-    nodes = shape.mesh.contact.x.size, shape.mesh.messenger.x.size
+    nodes = [wire.x.size for wire in shape.mesh.wires]
     wanted = count or (40 if below is None else _expected(shape, below))
     pairs = solve_eigen(system, nodes, wanted)
     while below is not None and count is None and pairs.frequencies[-1] <= below:
-        if wanted >= system.free.size - 1:
+        if wanted >= system.size - 1:
             break
-        wanted = min(int(1.3 * wanted) + 10, system.free.size - 1)
+        wanted = min(int(1.3 * wanted) + 10, system.size - 1)
         pairs = solve_eigen(system, nodes, wanted)
-    contact = WireShapes(shape.contact_wire_x, pairs.contact[:, :, _UP], pairs.contact[:, :, _SLOPE_UP])
-    messenger = WireShapes(
-        shape.messenger_wire_x, pairs.messenger[:, :, _UP], pairs.messenger[:, :, _SLOPE_UP]
+    up = system.node_width // 2 - 1
+    contact, messenger = (
+        WireShapes(shape.wires[wire].x, pairs.shapes[wire][:, :, up], pairs.shapes[wire][:, :, -1])
+        for wire in (0, shape.mesh.contact_wires)
     )
     modes = Modes(shape.catenary, pairs.frequencies, contact, messenger, pairs.along, pairs.damping_ratios)
     return modes if below is None else modes.below(below)

@@ -37,7 +37,7 @@ def make_run(
     import xarray as xr
 
     catenary = shape.catenary
-    static = shape.contact_wire_z[shape.mesh.contact.supports, None]
+    static = np.array([w.z[m.supports] for w, m in zip(shape.contact_wires, shape.mesh.wires, strict=False)])
     nominal = catenary.contact_wire_height
     by_time = ("pantograph", "time")
     variables: dict[str, Any] = {
@@ -56,7 +56,7 @@ def make_run(
         "dropper_force": _labelled(("dropper", "time"), journey.dropper_force, "N", "dropper tension"),
         "support_uplift": _labelled(
             ("support", "time"),
-            journey.support_height - static,
+            (journey.support_height - static[:, :, None]).max(axis=0),
             "m",
             "uplift of the contact wire at supports",
         ),
@@ -68,18 +68,38 @@ def make_run(
         "dropper_span": ("dropper", catenary.dropper_spans),
         "support_position": _labelled(("support",), catenary.support_positions, "m", "position of supports"),
     }
-    if journey.wire_z is not None:
-        variables["contact_wire_height"] = _labelled(
-            ("wire_time", "x"), journey.wire_z, "m", "height of the contact wire"
-        )
+    if journey.wire_z:
         coordinates["wire_time"] = _labelled(("wire_time",), journey.wire_times, "s", "time of wire shapes")
-        coordinates["x"] = _labelled(("x",), journey.wire_x, "m", "position along the line")
-        coordinates["static_contact_wire_height"] = _labelled(
-            ("x",), shape.contact_wire_z, "m", "height of the contact wire before the run"
-        )
+        for name, x, values, hanging in zip(
+            _wire_names(shape), journey.wire_x, journey.wire_z, shape.wires, strict=True
+        ):
+            _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
     attributes = _provenance(shape, pantographs, speed, time)
     attributes["warnings"] = json.dumps(list(warnings))
     return Run(xr.Dataset(variables, coordinates, attributes))
+
+
+def _wire_names(shape: Shape) -> list[str]:
+    contact = ["contact_wire", "left_contact_wire"][: len(shape.contact_wires)]
+    stitch = [f"stitch_wire_{i + 1}" for i in shape.catenary.stitched_supports]
+    return [*contact, "messenger_wire", *stitch]
+
+
+def _add_wire_shapes(
+    variables: dict[str, Any],
+    coordinates: dict[str, Any],
+    wire: str,
+    x: Floats,
+    values: Any,
+    static: Floats,
+) -> None:
+    """Whole shapes of one wire over time, in single precision: 0.5 µm at a height of 6 m."""
+    name, place = wire.replace("_", " "), "x" if wire == "contact_wire" else f"{wire}_x"
+    height, before = f"height of the {name}", f"height of the {name} before the run"
+    shapes = np.asarray(values, dtype=np.float32)
+    variables[f"{wire}_height"] = _labelled(("wire_time", place), shapes, "m", height)
+    coordinates[place] = _labelled((place,), x, "m", "position along the line")
+    coordinates[f"static_{wire}_height"] = _labelled((place,), static, "m", before)
 
 
 def _labelled(

@@ -46,13 +46,14 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
     if forces:
         loaded.solve([x for x, _ in forces], [f for _, f in forces])
     model = loaded.model
-    contact, messenger = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    up, contact, messenger = model.axes - 1, shapes[0], shapes[shape.mesh.contact_wires]
     return StaticState(
         contact_wire_x=contact[:, 0],
-        contact_wire_z=contact[:, 1],
+        contact_wire_z=contact[:, up],
         messenger_wire_x=messenger[:, 0],
-        messenger_wire_z=messenger[:, 1],
-        contact_wire_uplift=contact[:, 1] - shape.contact_wire_z,
+        messenger_wire_z=messenger[:, up],
+        contact_wire_uplift=contact[:, up] - shape.contact_wire_z,
         dropper_forces=model.dropper_forces(),
     )
 

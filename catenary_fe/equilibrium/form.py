@@ -3,54 +3,76 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import tan
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium.shape import Shape
-from catenary_fe.fe.mesh import Mesh, MeshSettings, WireMesh, make_mesh
-from catenary_fe.fe.model import Installation, Model, build_model
-from catenary_fe.fe.single_wire import WireStatics, solve_wire
+from catenary_fe.equilibrium.cut_wires import CutWires, DropperForces, straightened
+from catenary_fe.equilibrium.form_checks import (
+    check_links,
+    check_pulls,
+    check_room,
+    dropper_names,
+    given_lengths,
+)
+from catenary_fe.equilibrium.guess import guess_lines
+from catenary_fe.equilibrium.shape import HangingWire, Shape
+from catenary_fe.fe.mesh import Mesh, MeshSettings, make_mesh
+from catenary_fe.fe.model import Installation, Model, build_model, wire_kinds
+from catenary_fe.fe.single_wire import WireStatics
 from catenary_fe.fe.solver import solve_static
-from catenary_fe.fe.wire import GRAVITY, WireLine
-from catenary_fe.system import Catenary, InputError, SolverError, Wire
+from catenary_fe.fe.wire import WireLine
+from catenary_fe.system import GRAVITY, Catenary, SolverError
 
 Floats = NDArray[np.float64]
 
 HEIGHT_TOLERANCE = 1e-4  # [m] of the contact wire at the droppers
-_PASSES = 3  # each squares the error of the wires' lengths and of the droppers' weight; two are enough
+_SETTLED = 1e-6  # [m] change from pass to pass, where form finding ends
+_PASSES = 25  # in the plane three are enough, in space about eight
 
 
 def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     """Dropper lengths and forces with which the contact wire has its design height at every dropper.
 
-    The droppers are cut: the contact wire alone, held at its design heights, gives their forces; the
-    messenger wire alone, loaded with them, gives the room between the wires. The whole model, put together
-    with these lengths, is then solved, and must have its design heights.
+    The droppers are cut: the contact wires alone, held at their design heights, give the droppers' pull;
+    stitch and messenger wires alone, loaded with it, give the room between the wires and, in space, how the
+    droppers lean; that is repeated until nothing changes. The whole model, put together with these lengths,
+    is then solved, and must have its design heights.
 
     mesh : element lengths; a shape belongs to its mesh
 
-    Raises InputError for a design in which a dropper would have to push or has no room, SolverError where
-    no equilibrium is found or the heights are off by more than 0.1 mm.
+    Raises InputError for a design in which a dropper or a steady arm would have to push or has no room,
+    SolverError where no equilibrium is found or the heights are off by more than 0.1 mm.
     """
     settings = mesh or MeshSettings()
-    nodes = make_mesh(catenary, settings)
-    contact, forces, arm_forces = _hang_contact_wire(catenary, nodes.contact)
-    contact_weight = _clamp_weights(catenary, "contact_wire_clamp_mass")
-    lengths = np.zeros(len(catenary.droppers))
-    messenger = _messenger_guess(catenary, nodes.messenger, forces)
-    support_forces = np.zeros(len(catenary.supports))
+    wires = CutWires(catenary, make_mesh(catenary, settings))
+    lines = guess_lines(wires)
+    lengths, none = np.zeros(len(catenary.droppers)), np.zeros(len(catenary.droppers))
+    forces = DropperForces(none, none, none)
     for _ in range(_PASSES):
-        half_weights = _half_weights(catenary, lengths)
-        tensions = forces + contact_weight + half_weights
-        _check_tensions(catenary, tensions)
-        messenger, support_forces = _hang_messenger_wire(
-            catenary, nodes.messenger, messenger, tensions + half_weights
+        before = lengths
+        lines, forces = _pass(wires, lines, forces)
+        spread = _spread(wires.mesh, lines)
+        check_room(catenary, spread[:, -1])
+        distance = np.linalg.norm(spread, axis=1)
+        tension = forces.pull * distance / spread[:, -1]
+        lengths = distance - tension / np.array([d.stiffness for d in catenary.droppers])
+        weight = GRAVITY * np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
+        lean = spread[:, 1] / spread[:, -1] if wires.axes == 3 else none
+        forces = DropperForces(forces.pull, lean, weight)
+        if np.abs(lengths - before).max(initial=0.0) < _SETTLED:
+            break
+    else:
+        raise SolverError(
+            f"form finding: dropper lengths still change by {1e3 * np.abs(lengths - before).max():.3g} mm"
+            f" after {_PASSES} passes; look for long spans with little tension"
         )
-        lengths = _installed_lengths(nodes, contact, messenger) - tensions / _stiffnesses(catenary)
-    _check_room(catenary, lengths)
-    installation = Installation(contact, messenger, lengths, arm_forces, support_forces)
-    return _verified(catenary, settings, nodes, installation)
+    if wires.axes == 3:
+        check_links(catenary, wires.arm_forces)
+    check_room(catenary, lengths)
+    installation = Installation(tuple(lines), lengths, wires.arm_forces, wires.support_forces)
+    return _verified(catenary, settings, wires.mesh, installation)
 
 
 def find_heights(
@@ -64,206 +86,107 @@ def find_heights(
     Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
     """
     settings = mesh or MeshSettings()
-    nodes = make_mesh(catenary, settings)
-    lengths = _given_lengths(catenary, lengths)
-    installation = _installation_guess(catenary, nodes, lengths)
+    lengths = given_lengths(catenary, lengths)
+    wires = CutWires(catenary, make_mesh(catenary, settings))
+    lines = guess_lines(wires)
+    none = np.zeros(lengths.size)
+    forces = DropperForces(none, none, none)
+    for number in range(wires.mesh.contact_wires):
+        lines[number], forces = wires.hang_contact_wire(number, lines[number], forces)
+    installation = Installation(tuple(lines), lengths, wires.arm_forces, wires.support_forces)
     for _ in range(_PASSES):
-        model = build_model(catenary, nodes, installation, held=True)
-        installation = _settle(model, installation)
-    return _shape(catenary, settings, nodes, installation)
-
-
-def _hang_contact_wire(catenary: Catenary, mesh: WireMesh) -> tuple[WireLine, Floats, Floats]:
-    """Line of the contact wire, forces that hold it at the droppers, and forces of the steady arms."""
-    design = catenary.design_heights
-    nominal = catenary.contact_wire_height
-    last = len(catenary.supports) - 1
-    held = dict(zip(mesh.droppers.tolist(), design.tolist(), strict=True))
-    loads, springs = {}, {}
-    for i, support in enumerate(catenary.supports):
-        node, arm = int(mesh.supports[i]), support.steady_arm
-        if i in (0, last) or (arm and arm.holds_design_height):
-            held[node] = nominal
-        elif arm:
-            springs[node] = (arm.stiffness, nominal)
-            loads[node] = arm.preload - GRAVITY * arm.mass
-    fixed = sorted(held)
-    z = np.interp(mesh.x, mesh.x[fixed], [held[n] for n in fixed])
-    line = WireLine.through(catenary.contact_wire, mesh.x, z, np.gradient(z, mesh.x))
-    for _ in range(_PASSES):
-        statics = solve_wire(
-            catenary.contact_wire, line, held, loads, springs, what="form finding of the contact wire"
+        before = installation
+        model = build_model(catenary, wires.mesh, installation, held=True)
+        installation = _settle(model, installation, wires.pulls)
+        moved = max(
+            float(np.abs(a.points - b.points).max())
+            for a, b in zip(before.lines, installation.lines, strict=True)
         )
-        line = _straightened(catenary.contact_wire, mesh, statics)
-    forces = np.array([statics.reactions[int(n)] for n in mesh.droppers])
-    arm_forces = np.zeros(last + 1)
-    for i, support in list(enumerate(catenary.supports))[1:-1]:
-        node, arm = int(mesh.supports[i]), support.steady_arm
-        if arm and arm.holds_design_height:
-            arm_forces[i] = statics.reactions[node] + GRAVITY * arm.mass
-        elif arm:
-            arm_forces[i] = arm.preload - arm.stiffness * (statics.z[node] - nominal)
-    return line, forces, arm_forces
-
-
-def _hang_messenger_wire(
-    catenary: Catenary, mesh: WireMesh, line: WireLine, pulls: Floats
-) -> tuple[WireLine, Floats]:
-    """Line of the messenger wire under the pull of the droppers, and the forces of its supports."""
-    pulls = pulls + _clamp_weights(catenary, "messenger_clamp_mass")
-    held = dict(zip(mesh.supports.tolist(), catenary.messenger_support_heights.tolist(), strict=True))
-    loads = dict(zip(mesh.droppers.tolist(), (-pulls).tolist(), strict=True))
-    statics = solve_wire(
-        catenary.messenger_wire, line, held, loads, {}, what="form finding of the messenger wire"
-    )
-    return _straightened(catenary.messenger_wire, mesh, statics), np.array(
-        [statics.reactions[int(n)] for n in mesh.supports]
-    )
-
-
-def _straightened(wire: Wire, mesh: WireMesh, statics: WireStatics) -> WireLine:
-    """The line that was found, with the nodes back at their stations: clamps sit where they are wanted."""
-    from scipy.interpolate import CubicHermiteSpline
-
-    curve = CubicHermiteSpline(statics.x, statics.z, statics.dz_dx, extrapolate=True)
-    return WireLine.through(wire, mesh.x, curve(mesh.x), curve(mesh.x, 1))
-
-
-def _messenger_guess(catenary: Catenary, mesh: WireMesh, forces: Floats) -> WireLine:
-    """Parabolas between the supports, for the weight of both wires."""
-    weight = GRAVITY * (catenary.messenger_wire.mass_per_length + catenary.contact_wire.mass_per_length)
-    heights, positions = catenary.messenger_support_heights, catenary.support_positions
-    z, slope = np.empty_like(mesh.x), np.empty_like(mesh.x)
-    for i in range(len(catenary.spans)):
-        a, b = positions[i], positions[i + 1]
-        part = slice(mesh.supports[i], mesh.supports[i + 1] + 1)
-        x = mesh.x[part]
-        rise = (heights[i + 1] - heights[i]) / (b - a)
-        load = weight / (2 * catenary.messenger_wire.tension)
-        z[part] = heights[i] + rise * (x - a) - load * (x - a) * (b - x)
-        slope[part] = rise - load * (a + b - 2 * x)
-    return WireLine.through(catenary.messenger_wire, mesh.x, z, slope)
-
-
-def _clamp_weights(catenary: Catenary, which: str) -> Floats:
-    return GRAVITY * np.array([getattr(d, which) for d in catenary.droppers])
-
-
-def _half_weights(catenary: Catenary, lengths: Floats) -> Floats:
-    return GRAVITY * np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
-
-
-def _stiffnesses(catenary: Catenary) -> Floats:
-    return np.array([d.stiffness for d in catenary.droppers])
-
-
-def _installed_lengths(mesh: Mesh, contact: WireLine, messenger: WireLine) -> Floats:
-    lower, upper = mesh.contact.droppers, mesh.messenger.droppers
-    rise: Floats = messenger.z[upper] - contact.z[lower]
-    return rise
-
-
-def _names(catenary: Catenary) -> list[str]:
-    return [
-        f"span {i}: dropper {number} at {dropper.position:g} m"
-        for i, span in enumerate(catenary.spans, start=1)
-        for number, dropper in enumerate(span.droppers, start=1)
-    ]
-
-
-def _check_tensions(catenary: Catenary, tensions: Floats) -> None:
-    faults = [
-        f"{name} would have to push with {-force:.1f} N; droppers only pull: change the pre-sag, the height"
-        " there or the position"
-        for name, force in zip(_names(catenary), tensions, strict=True)
-        if force < 0
-    ]
-    if faults:
-        raise InputError(*faults)
-
-
-def _check_room(catenary: Catenary, lengths: Floats) -> None:
-    faults = [
-        f"{name} has no room: the messenger wire hangs {-length:.3f} m below its lower clamp; raise"
-        " system_height or the messenger wire's tension"
-        for name, length in zip(_names(catenary), lengths, strict=True)
-        if length <= 0
-    ]
-    if faults:
-        raise InputError(*faults)
-
-
-def _given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) -> Floats:
-    if lengths is None:
-        given = [d.length for d in catenary.droppers]
-        missing = [n for n, v in zip(_names(catenary), given, strict=True) if v is None]
-        if missing:
-            raise InputError(f"{missing[0]} has no length ({len(missing)} droppers in all); give all lengths")
-        lengths = np.array(given, dtype=float)
-    values = np.asarray(lengths, dtype=float)
-    if values.shape != (len(catenary.droppers),):
-        raise InputError(
-            f"{values.size} dropper lengths for {len(catenary.droppers)} droppers: give one each"
+        if moved < _SETTLED:
+            break
+    else:
+        raise SolverError(
+            f"static shape: the wires still move by {1e3 * moved:.3g} mm after {_PASSES} passes; look for"
+            " dropper lengths that do not fit the line"
         )
-    room = np.interp(
-        catenary.dropper_positions, catenary.support_positions, catenary.messenger_support_heights
-    ) - (catenary.design_heights)
-    faults = [
-        f"{name}: a length of {value:g} m must lie between 0 and the system height, {space:g} m there"
-        for name, value, space in zip(_names(catenary), values, room, strict=True)
-        if not 0 < value < space
-    ]
-    if faults:
-        raise InputError(*faults)
-    return values
+    if wires.axes == 3:
+        check_links(catenary, installation.arm_forces)
+    return _shape(catenary, settings, wires.mesh, installation)
 
 
-def _installation_guess(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Installation:
-    """Contact wire at its design height, messenger wire a dropper's length above it."""
-    contact, _, arm_forces = _hang_contact_wire(catenary, mesh.contact)
-    at = np.concatenate([mesh.messenger.supports, mesh.messenger.droppers])
-    heights = np.concatenate([catenary.messenger_support_heights, catenary.design_heights + lengths])
-    order = np.argsort(at)
-    z = np.interp(mesh.messenger.x, mesh.messenger.x[at[order]], heights[order])
-    messenger = WireLine.through(
-        catenary.messenger_wire, mesh.messenger.x, z, np.gradient(z, mesh.messenger.x)
-    )
-    return Installation(contact, messenger, lengths, arm_forces, np.zeros(len(catenary.supports)))
+def _pass(
+    wires: CutWires, lines: list[WireLine], forces: DropperForces
+) -> tuple[list[WireLine], DropperForces]:
+    """Hang each wire once more, with what is known of the others."""
+    mesh, lines = wires.mesh, list(lines)
+    for number in range(mesh.contact_wires):
+        lines[number], forces = wires.hang_contact_wire(number, lines[number], forces)
+    check_pulls(wires.catenary, forces.pull)
+    stitch_pulls: dict[tuple[int, int], float] = {}
+    for i, ends in enumerate(mesh.stitch_ends):
+        number = mesh.first_stitch + i
+        clamps = lines[mesh.contact_wires].points[ends]
+        lines[number], pulls = wires.hang_stitch_wire(number, lines[number], clamps, forces)
+        stitch_pulls |= pulls
+    lines[mesh.contact_wires] = wires.hang_messenger_wire(lines[mesh.contact_wires], forces, stitch_pulls)
+    return lines, forces
 
 
-def _settle(model: Model, installation: Installation) -> Installation:
+def _spread(mesh: Mesh, lines: Sequence[WireLine]) -> Floats:
+    """[m], shape (droppers, axes), from the droppers' lower to their upper clamps."""
+    points = np.concatenate([line.points for line in lines])
+    spread: Floats = points[mesh.nodes(mesh.upper)] - points[mesh.nodes(mesh.lower)]
+    return spread
+
+
+def _settle(model: Model, installation: Installation, pulls: Sequence[Floats]) -> Installation:
     """One static solve of a held model, and the installation that it amounts to."""
     catenary, mesh = model.catenary, model.mesh
     model.mbs.Assemble()
     solve_static(model.mbs, what="static shape for given dropper lengths")
-    contact, messenger = (
-        WireStatics(q[:, 0], q[:, 1], q[:, 3] / q[:, 2], {})
-        for q in model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    )
-    arm_forces, support_forces = np.zeros(len(catenary.supports)), np.zeros(len(catenary.supports))
-    for i, constraint in model.held_arms.items():
-        arm_forces[i] = model.held_force(constraint)
-    for i, constraint in model.held_supports.items():
-        support_forces[i] = model.held_force(constraint)
+    statics = [
+        WireStatics.from_coordinates(q) for q in model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    ]
+    lines = [
+        straightened(kind, wire.x, found, pull)
+        for kind, wire, found, pull in zip(
+            wire_kinds(catenary, mesh), mesh.wires, statics, pulls, strict=True
+        )
+    ]
+    arm_forces = np.zeros_like(installation.arm_forces)
+    support_forces = np.zeros_like(installation.support_forces)
+    messenger = mesh.contact_wires
+    for (wire, i, axis), constraint in model.held.arms.items():
+        arm_forces[wire, i, axis - 1] = model.held_force(constraint)
+        _stay(lines[wire], installation.lines[wire], int(mesh.wires[wire].supports[i]), axis)
+    for (i, axis), constraint in model.held.supports.items():
+        support_forces[i, axis - 1] = model.held_force(constraint)
+        _stay(lines[messenger], installation.lines[messenger], int(mesh.messenger.supports[i]), axis)
+    arm_forces[:, [0, -1]] = 0.0  # the wires' anchors
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         arm = support.steady_arm
-        if arm and not arm.holds_design_height:
-            raised = contact.z[mesh.contact.supports[i]] - catenary.contact_wire_height
-            arm_forces[i] = arm.preload - arm.stiffness * raised
-    return Installation(
-        _straightened(catenary.contact_wire, mesh.contact, contact),
-        _straightened(catenary.messenger_wire, mesh.messenger, messenger),
-        installation.dropper_lengths,
-        arm_forces,
-        support_forces,
-    )
+        if arm is None or arm.holds_height:
+            continue
+        for wire in range(mesh.contact_wires):
+            raised = statics[wire].points[mesh.wires[wire].supports[i], -1] - catenary.contact_wire_height
+            arm_forces[wire, i, -1] = (
+                arm.preload - arm.stiffness * raised
+                if arm.stiffness is not None
+                else abs(arm_forces[wire, i, 0]) * tan(arm.inclination or 0.0)
+            )
+    return Installation(tuple(lines), installation.dropper_lengths, arm_forces, support_forces)
+
+
+def _stay(line: WireLine, before: WireLine, node: int, axis: int) -> None:
+    """A held node that slides along the track to its station keeps its height."""
+    line.points[node, axis] = before.points[node, axis]
 
 
 def _verified(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation: Installation) -> Shape:
     shape = _shape(catenary, settings, nodes, installation)
     errors = np.abs(shape.height_errors)
     if errors.size and errors.max() > HEIGHT_TOLERANCE:
-        name = _names(catenary)[int(errors.argmax())]
+        name = dropper_names(catenary)[int(errors.argmax())]
         raise SolverError(
             f"{name}: the contact wire misses its design height by {1e3 * errors.max():.2f} mm, more than"
             f" {1e3 * HEIGHT_TOLERANCE:g} mm; refine the mesh, and look for slack droppers nearby"
@@ -276,18 +199,16 @@ def _shape(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation
     model = build_model(catenary, nodes, installation)
     model.mbs.Assemble()
     solve_static(model.mbs, what="static shape of the catenary")
-    contact, messenger = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    lower, upper = contact[nodes.contact.droppers], messenger[nodes.messenger.droppers]
+    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    wires = tuple(HangingWire.from_coordinates(q) for q in shapes)
+    points = np.concatenate([q[:, : model.axes] for q in shapes])
+    spread = points[nodes.nodes(nodes.upper)] - points[nodes.nodes(nodes.lower)]
     return Shape(
         catenary=catenary,
         mesh_settings=settings,
         mesh=nodes,
         installation=installation,
-        contact_wire_x=contact[:, 0],
-        contact_wire_z=contact[:, 1],
-        contact_wire_dz_dx=contact[:, 3] / contact[:, 2],
-        messenger_wire_x=messenger[:, 0],
-        messenger_wire_z=messenger[:, 1],
+        wires=wires,
         dropper_forces=model.dropper_forces(),
-        installed_lengths=np.hypot(upper[:, 0] - lower[:, 0], upper[:, 1] - lower[:, 1]),
+        installed_lengths=np.linalg.norm(spread, axis=1),
     )

@@ -43,11 +43,48 @@ class DropperRow:
 
 
 @dataclass(frozen=True)
+class HangingWire:
+    """Where one wire hangs.
+
+    x, y, z : [m], shape (nodes,), along the track, to the left of its centre (0 in the plane), above the rail
+    dy_dx, dz_dx : shape (nodes,), inclinations
+    """
+
+    x: Floats
+    y: Floats
+    z: Floats
+    dy_dx: Floats
+    dz_dx: Floats
+
+    @classmethod
+    def from_coordinates(cls, q: Floats) -> HangingWire:
+        """From total coordinates of shape (nodes, 2 * axes): points, slopes."""
+        axes = q.shape[1] // 2
+        inclinations = q[:, axes:] / q[:, axes : axes + 1]
+        none = np.zeros(len(q))
+        y, dy_dx = (q[:, 1], inclinations[:, 1]) if axes == 3 else (none, none)
+        return cls(q[:, 0], y, q[:, axes - 1], dy_dx, inclinations[:, -1])
+
+    def height(self, x: ArrayLike) -> Floats:
+        """[m] at positions x [m] along the line, any shape; cubic inside the elements."""
+        return self._between(x, self.z, self.dz_dx)
+
+    def lateral(self, x: ArrayLike) -> Floats:
+        """[m] to the left of the track's centre at positions x [m] along the line, any shape."""
+        return self._between(x, self.y, self.dy_dx)
+
+    def _between(self, x: ArrayLike, values: Floats, slopes: Floats) -> Floats:
+        from scipy.interpolate import CubicHermiteSpline
+
+        found: Floats = CubicHermiteSpline(self.x, values, slopes)(np.asarray(x, dtype=float))
+        return found
+
+
+@dataclass(frozen=True)
 class Shape:
     """A catenary with its dropper lengths, in static equilibrium on one mesh.
 
-    contact_wire_x, contact_wire_z, messenger_wire_x, messenger_wire_z : [m], shape (nodes,)
-    contact_wire_dz_dx : shape (nodes,), inclination
+    wires : contact wires (the right one first), messenger wire, stitch wires, as in the mesh
     dropper_forces : [N], shape (droppers,)
     installed_lengths : [m], shape (droppers,), of the loaded droppers
     """
@@ -56,28 +93,55 @@ class Shape:
     mesh_settings: MeshSettings
     mesh: Mesh
     installation: Installation
-    contact_wire_x: Floats
-    contact_wire_z: Floats
-    contact_wire_dz_dx: Floats
-    messenger_wire_x: Floats
-    messenger_wire_z: Floats
+    wires: tuple[HangingWire, ...]
     dropper_forces: Floats
     installed_lengths: Floats
 
     @property
+    def contact_wires(self) -> tuple[HangingWire, ...]:
+        """One contact wire, or the right and the left one."""
+        return self.wires[: self.mesh.contact_wires]
+
+    @property
+    def messenger_wire(self) -> HangingWire:
+        """The messenger wire."""
+        return self.wires[self.mesh.contact_wires]
+
+    @property
+    def stitch_wires(self) -> tuple[HangingWire, ...]:
+        """The stitch wires, none without them."""
+        return self.wires[self.mesh.first_stitch :]
+
+    @property
+    def contact_wire_x(self) -> Floats:
+        """[m], shape (nodes,), of the (right) contact wire."""
+        return self.wires[0].x
+
+    @property
+    def contact_wire_z(self) -> Floats:
+        """[m], shape (nodes,), of the (right) contact wire."""
+        return self.wires[0].z
+
+    @property
+    def messenger_wire_x(self) -> Floats:
+        """[m], shape (nodes,)."""
+        return self.messenger_wire.x
+
+    @property
+    def messenger_wire_z(self) -> Floats:
+        """[m], shape (nodes,)."""
+        return self.messenger_wire.z
+
+    @property
     def height_errors(self) -> Floats:
         """[m], shape (droppers,): height of the contact wire above its design height at each dropper."""
-        errors: Floats = self.contact_wire_z[self.mesh.contact.droppers] - self.catenary.design_heights
+        heights = np.concatenate([wire.z for wire in self.wires])
+        errors: Floats = heights[self.mesh.nodes(self.mesh.lower)] - self.catenary.design_heights
         return errors
 
     def contact_wire_height(self, x: ArrayLike) -> Floats:
-        """[m] of the contact wire at positions x [m] along the line, any shape; cubic inside the elements."""
-        from scipy.interpolate import CubicHermiteSpline
-
-        heights: Floats = CubicHermiteSpline(
-            self.contact_wire_x, self.contact_wire_z, self.contact_wire_dz_dx
-        )(np.asarray(x, dtype=float))
-        return heights
+        """[m] of the (right) contact wire at positions x [m] along the line, any shape."""
+        return self.wires[0].height(x)
 
     @property
     def dropper_lengths(self) -> Floats:
@@ -86,13 +150,21 @@ class Shape:
 
     @property
     def steady_arm_forces(self) -> Floats:
-        """[N], shape (spans + 1,), upward on the contact wire; 0 where there is no arm."""
-        return self.installation.arm_forces
+        """[N], shape (spans + 1,), upward on all contact wires; 0 where there is no arm."""
+        forces: Floats = self.installation.arm_forces[:, :, -1].sum(axis=0)
+        return forces
+
+    @property
+    def steady_arm_lateral_forces(self) -> Floats:
+        """[N], shape (spans + 1,), to the left on all contact wires; 0 in the plane."""
+        forces = self.installation.arm_forces
+        lateral: Floats = forces[:, :, 0].sum(axis=0) if forces.shape[2] > 1 else 0 * forces[0, :, 0]
+        return lateral
 
     @property
     def support_forces(self) -> Floats:
         """[N], shape (spans + 1,), upward on the messenger wire."""
-        return self.installation.support_forces
+        return self.installation.support_forces[:, -1]
 
     def dropper_schedule(self) -> list[DropperRow]:
         """The table that a crew needs, one row a dropper."""

@@ -9,13 +9,14 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.contact import MovingContact, PantographItems, add_pantographs, locate
+from catenary_fe.fe.contact import MovingContact, locate
 from catenary_fe.fe.energy import EnergyMeter
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
+from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings
-from catenary_fe.fe.wire import COORDINATES, UP, hermite
+from catenary_fe.fe.wire import hermite
 from catenary_fe.system import AnyPantograph, Catenary
 
 Floats = NDArray[np.float64]
@@ -28,12 +29,13 @@ class Journey:
 
     time : [s], shape (times,)
     position : [m], shape (pantographs, times), along the track
-    contact_force : [N], shape (pantographs, times)
-    wire_height : [m], shape (pantographs, times), of the contact wire over the head, above its nominal height
+    contact_force : [N], shape (pantographs, times), of all strips on all contact wires
+    wire_height : [m], shape (pantographs, times), of the contact wire over the head, above its nominal
+        height; of several points of contact, their mean
     mass_heights : [m], for each pantograph shape (masses, times), above the nominal contact wire height
     dropper_force : [N], shape (droppers, times)
-    support_height : [m], shape (spans + 1, times), of the contact wire at the supports
-    wire_x, wire_z : [m], stations (nodes,) of the contact wire and its heights (shape times, nodes), or None
+    support_height : [m], shape (contact wires, spans + 1, times), of the contact wires at the supports
+    wire_x, wire_z : [m], for each wire its stations (nodes,) and its heights (shape times, nodes), or none
     wire_times : [s], times of ``wire_z``
     energy : [J], shape (energy_times,), kinetic and stored, or empty
     energy_times : [s]
@@ -48,8 +50,8 @@ class Journey:
     mass_heights: list[Floats]
     dropper_force: Floats
     support_height: Floats
-    wire_x: Floats
-    wire_z: Floats | None
+    wire_x: list[Floats]
+    wire_z: list[Floats]
     wire_times: Floats | None
     energy: Floats
     energy_times: Floats
@@ -119,9 +121,10 @@ def raise_heads(model: Model, items: Sequence[PantographItems]) -> None:
     mbs = model.mbs
     coordinates = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     for item in items:
-        gap = float(mbs.GetObjectOutput(item.connector, exu.OutputVariableType.Displacement)[UP])
-        for node in item.nodes:
-            coordinates[mbs.systemData.GetNodeLTGODE2(node)[0]] = 1e-3 - gap
+        gaps = [mbs.GetObjectOutput(c.connector, exu.OutputVariableType.Displacement) for c in item.contacts]
+        gap = float(np.mean([values[c.wire.up] for values, c in zip(gaps, item.contacts, strict=True)]))
+        for node, coordinate in item.heights:
+            coordinates[mbs.systemData.GetNodeLTGODE2(node)[coordinate]] = 1e-3 - gap
     for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
         mbs.systemData.SetODE2Coordinates(coordinates, configuration=configuration)
 
@@ -133,24 +136,28 @@ class _Recorder:
         self._model, self._items, self._trip = model, items, trip
         n, catenary = trip.steps + 1, model.catenary
         self._force = np.zeros((len(items), n))
-        self._gap = np.zeros((len(items), n))
-        self._masses = [np.zeros((len(item.nodes), n)) for item in items]
+        self._wire_height = np.zeros((len(items), n))
+        self._masses = [np.zeros((len(item.heights), n)) for item in items]
         self._mass_index = [
-            [model.mbs.systemData.GetNodeLTGODE2(node)[0] for node in item.nodes] for item in items
+            [model.mbs.systemData.GetNodeLTGODE2(node)[coordinate] for node, coordinate in item.heights]
+            for item in items
         ]
         self._dropper = np.zeros((len(catenary.droppers), n))
         self._stiffness = np.array([d.stiffness for d in catenary.droppers])
         self._damping = dropper_damping(catenary)
-        offset = COORDINATES * len(model.contact.nodes)
-        lower = COORDINATES * model.mesh.contact.droppers
-        upper = offset + COORDINATES * model.mesh.messenger.droppers
-        self._lower, self._upper = lower[:, None] + [0, UP], upper[:, None] + [0, UP]
-        contact, messenger = model.contact.line, model.messenger.line
-        self._reference = np.concatenate([contact.coordinates().ravel(), messenger.coordinates().ravel()])
-        self._span = self._reference[self._upper] - self._reference[self._lower]
-        self._support_index = COORDINATES * model.mesh.contact.supports + UP
-        self._support = np.zeros((len(catenary.supports), n))
-        self._wire_index = COORDINATES * np.arange(len(model.contact.nodes)) + UP
+        mesh, width = model.mesh, model.node_width
+        axes, up = np.arange(model.axes), model.axes - 1
+        self._lower = width * mesh.nodes(mesh.lower)[:, None] + axes
+        self._upper = width * mesh.nodes(mesh.upper)[:, None] + axes
+        reference = np.concatenate([wire.line.coordinates().ravel() for wire in model.wires])
+        self._span = reference[self._upper] - reference[self._lower]
+        supports = [
+            first + wire.supports
+            for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False)
+        ]
+        self._support_index = width * np.array(supports) + up
+        self._support = np.zeros((mesh.contact_wires, len(catenary.supports), n))
+        self._wire_index = width * np.arange(mesh.first_nodes[-1]) + up
         self._every = round(trip.wire_interval / trip.time.step) if trip.wire_interval else 0
         self._wire: list[Floats] = []
         self._power = np.zeros(n if trip.energy_interval else 0)
@@ -161,12 +168,12 @@ class _Recorder:
     def record(self, n: int) -> None:
         data = self._model.mbs.systemData
         q = data.GetODE2Coordinates()
+        output, force = self._model.mbs.GetObjectOutput, exu.OutputVariableType.Force
         for i, item in enumerate(self._items):
-            output = self._model.mbs.GetObjectOutput
-            self._force[i, n] = output(item.connector, exu.OutputVariableType.Force)[UP]
-            self._gap[i, n] = output(item.connector, exu.OutputVariableType.Displacement)[UP]
+            self._force[i, n] = sum(output(c.connector, force)[c.wire.up] for c in item.contacts)
+            self._wire_height[i, n] = self._height_over(item)
             self._masses[i][:, n] = q[self._mass_index[i]]
-        self._support[:, n] = q[self._support_index]
+        self._support[:, :, n] = q[self._support_index]
         if self._stiffness.size:
             self._dropper[:, n] = self._dropper_tension(q, data.GetODE2Coordinates_t())
         if self._every and n % self._every == 0:
@@ -176,9 +183,15 @@ class _Recorder:
             if n % self._energy_every == 0:
                 self._energy.append(self._meter.energy())
 
+    def _height_over(self, item: PantographItems) -> float:
+        """[m] of the wire over a head, above its nominal height; the mean of its points of contact."""
+        position, output = exu.OutputVariableType.Position, self._model.mbs.GetMarkerOutput
+        heights = [output(c.wire_marker, position)[c.wire.up] for c in item.contacts]
+        return float(sum(heights) / len(heights) - self._model.contact_wire_height)
+
     def _driving_power(self, n: int, q: Floats) -> float:
         """Over the way of a step, not at a point: the wire's kinks are shorter than that."""
-        shape, _ = self._model.wire_shapes(q)
+        shape, *_ = self._model.wire_shapes(q)
         half = self._trip.speed * self._trip.time.step / 2
         x = self._trip.start + self._trip.speed * n * self._trip.time.step
         rise = np.array([self._height(shape, xi + half) - self._height(shape, xi - half) for xi in x])
@@ -187,11 +200,12 @@ class _Recorder:
     def _height(self, shape: Floats, position: float) -> float:
         element, local = locate(self._model.contact, position)
         length = self._model.contact.line.lengths[element]
-        return float(hermite(local / length, length) @ shape[element : element + 2, [UP, 3]].ravel())
+        vertical = [self._model.axes - 1, -1]
+        return float(hermite(local / length, length) @ shape[element : element + 2, vertical].ravel())
 
     def _dropper_tension(self, q: Floats, v: Floats) -> Floats:
         span = self._span + q[self._upper] - q[self._lower]
-        length = np.hypot(span[:, 0], span[:, 1])
+        length = np.linalg.norm(span, axis=1)
         stretch = length - self._model.dropper_lengths
         rate = ((v[self._upper] - v[self._lower]) * span).sum(axis=1) / length
         spring = np.maximum(self._stiffness * stretch, 0.0)
@@ -201,21 +215,24 @@ class _Recorder:
     def journey(self) -> Journey:
         trip, model = self._trip, self._model
         time: Floats = np.arange(trip.steps + 1, dtype=np.float64) * trip.time.step
-        wire = np.array(self._wire) if self._wire else None
-        nominal = np.zeros((1, time.size))  # an elastic pantograph's law counts from there
-        heads = np.array([masses[0] if masses.size else nominal[0] for masses in self._masses])
-        line = model.contact.line
+        wires, ends = model.wires, model.mesh.first_nodes
+        stored = np.array(self._wire)
+        support_z = np.array(
+            [w.line.z[m.supports] for w, m in zip(model.contacts, model.mesh.wires, strict=False)]
+        )
         return Journey(
             time=time,
             position=trip.start[:, None] + trip.speed * time,
             contact_force=self._force,
-            wire_height=heads - self._gap,
+            wire_height=self._wire_height,
             mass_heights=self._masses,
             dropper_force=self._dropper,
-            support_height=line.z[model.mesh.contact.supports, None] + self._support,
-            wire_x=line.x,
-            wire_z=None if wire is None else line.z + wire,
-            wire_times=None if wire is None else time[:: self._every],
+            support_height=support_z[:, :, None] + self._support,
+            wire_x=[wire.line.x for wire in wires],
+            wire_z=[w.line.z + stored[:, a:b] for w, a, b in zip(wires, ends[:-1], ends[1:], strict=True)]
+            if self._wire
+            else [],
+            wire_times=time[:: self._every] if self._wire else None,
             energy=np.array(self._energy),
             energy_times=time[:: self._energy_every] if self._meter else np.array([]),
             driving_power=self._power,

@@ -21,15 +21,23 @@ class EnergyMeter:
         by_type: dict[str, list[int]] = {}
         for number, item in enumerate(objects):
             by_type.setdefault(item["objectType"], []).append(number)
-        self._cables = by_type.get("ANCFCable2D", [])
-        self._bodies = [*self._cables, *by_type.get("Mass1D", []), *by_type.get("GenericODE2", [])]
+        self._cables = [*by_type.get("ANCFCable2D", []), *by_type.get("ANCFCable", [])]
+        bodies = [i for kind in ("Mass1D", "RigidBody", "GenericODE2") for i in by_type.get(kind, [])]
+        self._bodies = [*self._cables, *bodies]
         self._springs = by_type.get("ConnectorCoordinateSpringDamper", [])
-        self._droppers = [
-            (i, objects[i]["stiffness"], objects[i]["referenceLength"])
+        self._droppers = [  # and links, which have no law of their own and push too
+            (
+                i,
+                objects[i]["stiffness"],
+                objects[i]["referenceLength"],
+                not objects[i]["springForceUserFunction"],
+            )
             for i in by_type.get("ConnectorSpringDamper", [])
         ]
+        up = 2 if by_type.get("ANCFCable") else 1
+        self._up = up
         self._contacts = [
-            (i, objects[i]["stiffness"][1]) for i in by_type.get("ConnectorCartesianSpringDamper", [])
+            (i, objects[i]["stiffness"][up]) for i in by_type.get("ConnectorCartesianSpringDamper", [])
         ]
         self._forces = np.zeros(mbs.systemData.ODE2Size())
         for i in by_type.get("GenericODE2", []):
@@ -47,10 +55,10 @@ class EnergyMeter:
         total = sum(mbs.GetObjectOutputBody(i, _KINETIC, origin) for i in self._bodies)
         total += sum(mbs.GetObjectOutputBody(i, _POTENTIAL, origin) for i in self._cables)
         total += sum(mbs.GetObjectOutput(i, _POTENTIAL) for i in self._springs)
-        for i, stiffness, length in self._droppers:
+        for i, stiffness, length, pushes in self._droppers:
             stretch = mbs.GetObjectOutput(i, exu.OutputVariableType.Distance) - length
-            total += 0.5 * stiffness * max(stretch, 0.0) ** 2
+            total += 0.5 * stiffness * (stretch if pushes else max(stretch, 0.0)) ** 2
         for i, stiffness in self._contacts:
-            depth = mbs.GetObjectOutput(i, exu.OutputVariableType.Displacement)[1]
+            depth = mbs.GetObjectOutput(i, exu.OutputVariableType.Displacement)[self._up]
             total += 0.5 * stiffness * max(depth, 0.0) ** 2
         return float(total - self._forces @ mbs.systemData.GetODE2Coordinates())

@@ -13,6 +13,9 @@ from catenary_fe.system import Catenary, InputError
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_ROUNDING = 1e-6  # [m] stations closer than this are one
+_CLAMP_ROOM = 0.05  # [m] a dropper this close to a stitch wire's clamp hangs on the messenger wire
+
 
 @dataclass(frozen=True, kw_only=True)
 class MeshSettings:
@@ -22,7 +25,7 @@ class MeshSettings:
     the length ``at_clamps`` and grow away from them up to the largest one.
 
     contact_wire_element : largest, of the wire that the pantograph touches
-    messenger_wire_element : largest
+    messenger_wire_element : largest, of the messenger wire and of stitch wires
     at_clamps : next to droppers and supports
     growth : ratio of neighbouring lengths
 
@@ -54,43 +57,122 @@ class MeshSettings:
 
 @dataclass(frozen=True)
 class WireMesh:
-    """Stations of one wire's nodes, and which of them carry droppers and supports.
+    """Stations of one wire's nodes.
 
     x : [m], shape (nodes,), ascending
-    droppers : shape (droppers,), node number at each dropper
-    supports : shape (spans + 1,), node number at each support
+    supports : shape (spans + 1,), node number at each support; empty for a stitch wire
     """
 
     x: Floats
-    droppers: Integers
     supports: Integers
 
 
 @dataclass(frozen=True)
-class Mesh:
-    """Meshes of the two wires of a catenary."""
+class Clamps:
+    """Where the droppers are clamped at one of their ends.
 
-    contact: WireMesh
-    messenger: WireMesh
+    wire : shape (droppers,), number of the wire in the mesh
+    node : shape (droppers,), number of the node on that wire
+    """
+
+    wire: Integers
+    node: Integers
+
+    def on(self, wire: int) -> Integers:
+        """Numbers of the droppers that are clamped on a wire."""
+        return np.flatnonzero(self.wire == wire)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Meshes of all wires of a catenary: contact wires, then the messenger wire, then stitch wires.
+
+    contact_wires : how many there are
+    lower, upper : where the droppers are clamped, below on a contact wire, above on the messenger or a
+        stitch wire
+    stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
+    """
+
+    wires: tuple[WireMesh, ...]
+    contact_wires: int
+    lower: Clamps
+    upper: Clamps
+    stitch_ends: Integers
+
+    @property
+    def contact(self) -> WireMesh:
+        """The contact wire; of two, the right one."""
+        return self.wires[0]
+
+    @property
+    def messenger(self) -> WireMesh:
+        """The messenger wire."""
+        return self.wires[self.contact_wires]
+
+    @property
+    def first_stitch(self) -> int:
+        """Number of the first stitch wire among all wires, whether there is one or not."""
+        return self.contact_wires + 1
+
+    @property
+    def first_nodes(self) -> Integers:
+        """Shape (wires + 1,): number of each wire's first node among all nodes, and their count."""
+        return np.cumsum([0, *(wire.x.size for wire in self.wires)])
+
+    def nodes(self, clamps: Clamps) -> Integers:
+        """Shape (droppers,): numbers of clamped nodes among the nodes of all wires."""
+        numbers: Integers = self.first_nodes[clamps.wire] + clamps.node
+        return numbers
 
 
 def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
-    """Mesh both wires with nodes at all droppers and supports."""
+    """Mesh all wires with nodes at their droppers, supports and clamps."""
+    at, below = catenary.dropper_positions, catenary.dropper_contact_wires
+    contact_wires = len(catenary.contact_wire_offsets)
+    above = np.full(at.size, contact_wires)
+    half = catenary.stitch_wire.length / 2 if catenary.stitch_wire else 0.0
+    middles = catenary.support_positions[list(catenary.stitched_supports)]
+    for i, middle in enumerate(middles):
+        above[np.abs(at - middle) < half - _CLAMP_ROOM] = contact_wires + 1 + i
+    ends = np.stack([middles - half, middles + half], axis=1)
+    lines = [
+        _line_mesh(catenary, at[below == i], settings, settings.contact_wire_element)
+        for i in range(contact_wires)
+    ]
+    hangers = np.concatenate([at[above == contact_wires], ends.ravel()])
+    lines.append(_line_mesh(catenary, hangers, settings, settings.messenger_wire_element))
+    for i, pair in enumerate(ends):
+        on_it = at[above == contact_wires + 1 + i]
+        x = _stations(np.concatenate([pair, on_it]), settings, settings.messenger_wire_element)
+        lines.append(WireMesh(x, np.array([], dtype=np.int64)))
     return Mesh(
-        contact=_wire_mesh(catenary, settings, settings.contact_wire_element),
-        messenger=_wire_mesh(catenary, settings, settings.messenger_wire_element),
+        wires=tuple(lines),
+        contact_wires=contact_wires,
+        lower=_clamps(lines, below, at),
+        upper=_clamps(lines, above, at),
+        stitch_ends=np.searchsorted(lines[contact_wires].x, ends - _ROUNDING),
     )
 
 
-def _wire_mesh(catenary: Catenary, settings: MeshSettings, largest: float) -> WireMesh:
-    supports, droppers = catenary.support_positions, catenary.dropper_positions
-    fixed = np.unique(np.concatenate([supports, droppers]))
+def _clamps(lines: list[WireMesh], wires: Integers, at: Floats) -> Clamps:
+    node = [int(np.searchsorted(lines[w].x, x - _ROUNDING)) for w, x in zip(wires, at, strict=True)]
+    return Clamps(wires, np.array(node, dtype=np.int64))
+
+
+def _line_mesh(catenary: Catenary, clamps: Floats, settings: MeshSettings, largest: float) -> WireMesh:
+    x = _stations(np.concatenate([catenary.support_positions, clamps]), settings, largest)
+    return WireMesh(x=x, supports=np.searchsorted(x, catenary.support_positions - _ROUNDING))
+
+
+def _stations(fixed: Floats, settings: MeshSettings, largest: float) -> Floats:
+    """Nodes on the fixed stations and, graded, between them."""
+    fixed = np.unique(fixed)
+    fixed = fixed[np.concatenate([[True], np.diff(fixed) > _ROUNDING])]
     parts = [
         a + _graded(b - a, min(settings.at_clamps, largest), settings.growth, largest)
         for a, b in pairwise(fixed)
     ]
-    x = np.append(np.concatenate(parts), fixed[-1])
-    return WireMesh(x=x, droppers=np.searchsorted(x, droppers), supports=np.searchsorted(x, supports))
+    return np.append(np.concatenate(parts), fixed[-1])
 
 
 def _graded(length: float, first: float, growth: float, largest: float) -> Floats:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import exudyn as exu
@@ -13,7 +15,6 @@ from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses
 from catenary_fe.fe.solver import solve_static
-from catenary_fe.fe.wire import COORDINATES, UP
 from catenary_fe.system import Catenary, InputError, SolverError
 
 Floats = NDArray[np.float64]
@@ -25,22 +26,24 @@ _DENSE_SHARE, _DENSE_LARGEST = 0.15, 5000
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """Small motions about the static state: M q̈ + D q̇ + K q = 0, droppers taut.
+    """Small motions about the static state: M ẍ + D ẋ + K x = 0, droppers taut; q = T x.
 
-    mass, stiffness, damping : sparse, over the coordinates ``free`` of ``size``
+    mass, stiffness, damping : sparse, over the free coordinates x
+    transformation : T, sparse, from the free to all coordinates: those that are held stay 0, those of clamps
+        that sit on another wire follow it
+    node_width : coordinates of a node
     """
 
     mass: Any
     stiffness: Any
     damping: Any
-    free: Integers
-    size: int
+    transformation: Any
+    node_width: int
 
-    def whole(self, vectors: Floats) -> Floats:
-        """Shape (size, vectors): columns over all coordinates, 0 where they are held."""
-        filled = np.zeros((self.size, vectors.shape[1]))
-        filled[self.free] = vectors
-        return filled
+    @property
+    def size(self) -> int:
+        """Number of free coordinates."""
+        return int(self.mass.shape[0])
 
 
 @dataclass(frozen=True)
@@ -48,14 +51,13 @@ class EigenPairs:
     """Eigenpairs in rising order, the shapes mass-normalised.
 
     frequencies : [Hz], shape (modes,)
-    contact, messenger : [1/√kg], shape (modes, nodes, 4): position and slope of the nodes, along and up
-    along : shape (modes,), share of the kinetic energy that moves along the track
+    shapes : [1/√kg], for each wire shape (modes, nodes, 2 * axes): positions and slopes of the nodes
+    along : shape (modes,), share of the kinetic energy that does not move up and down
     damping_ratios : shape (modes,), of critical damping, from the diagonal of the modal damping matrix
     """
 
     frequencies: Floats
-    contact: Floats
-    messenger: Floats
+    shapes: list[Floats]
     along: Floats
     damping_ratios: Floats
 
@@ -69,40 +71,40 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
     mbs = model.mbs
     mbs.Assemble()
     solve_static(mbs, what="static state for modal analysis")
-    wires = [*model.contact.elements, *model.messenger.elements]
-    masses = point_masses(catenary, mesh, installation.dropper_lengths)
+    wires = [element for wire in model.wires for element in wire.elements]
+    masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
     M, K = mass_matrix(mbs, wires), stiffness_matrix(mbs, wires)
     droppers = np.array([d.stiffness for d in catenary.droppers])
     D = catenary.damping.alpha * M + catenary.damping.beta * K
     D = D + _droppers(model, dropper_damping(catenary), pulled=False) + _springs(model, "damping")
-    M = M + _diagonal(np.outer(masses, [1.0, 1.0, 0.0, 0.0]).ravel())
-    K = K + _droppers(model, droppers) + _springs(model, "stiffness")
-    size = mbs.systemData.ODE2Size()
-    free = np.setdiff1d(np.arange(size), _held(model))
-    M, K, D = (matrix[free][:, free] for matrix in (M, K, D))
-    return LinearSystem(M, K, D, free, size)
+    moves = np.repeat([1.0, 0.0], model.axes)
+    M = M + _diagonal(np.outer(masses, moves).ravel())
+    K = K + _droppers(model, droppers) + _springs(model, "stiffness") + _links(model)
+    T = transformation(model)
+    M, K, D = (T.T @ matrix @ T for matrix in (M, K, D))
+    return LinearSystem(M, K, D, T, model.node_width)
 
 
-def solve_eigen(system: LinearSystem, nodes: tuple[int, int], count: int) -> EigenPairs:
-    """The lowest ``count`` eigenpairs; ``nodes`` on contact and messenger wire.
+def solve_eigen(system: LinearSystem, nodes: Sequence[int], count: int) -> EigenPairs:
+    """The lowest ``count`` eigenpairs; ``nodes`` on each wire.
 
     Raises SolverError if the iteration fails or the static state is not stable.
     """
-    squares, vectors = _lowest(system, min(count, system.free.size - 1))
+    squares, vectors = _lowest(system, min(count, system.size - 1))
     if squares[0] <= 0:
         raise SolverError(f"modal analysis: ω² = {squares[0]:g} 1/s² is not positive: the state is unstable")
-    count = squares.size
-    weighted = system.whole(system.mass @ vectors)
-    filled = system.whole(vectors)
-    is_along = np.arange(system.size) % 2 == 0
-    along = (filled * weighted)[is_along].sum(axis=0)
-    ends = COORDINATES * nodes[0], COORDINATES * (nodes[0] + nodes[1])
-    contact, messenger = (
-        part.T.reshape(count, -1, COORDINATES) for part in (filled[: ends[0]], filled[ends[0] : ends[1]])
+    count, width = squares.size, system.node_width
+    weighted = system.mass @ vectors
+    filled = system.transformation @ vectors
+    ends = width * np.cumsum([0, *nodes])
+    shapes = [filled[a:b].T.reshape(count, -1, width) for a, b in pairwise(ends)]
+    is_up = (
+        np.asarray(system.transformation.T @ (np.arange(len(filled)) % (width // 2) == width // 2 - 1)) > 0
     )
+    up = (vectors * weighted)[is_up].sum(axis=0)
     omega = np.sqrt(squares)
     damping = np.einsum("ij,ij->j", vectors, system.damping @ vectors) / (2 * omega)
-    return EigenPairs(omega / (2 * np.pi), contact, messenger, along, damping)
+    return EigenPairs(omega / (2 * np.pi), shapes, 1 - up, damping)
 
 
 def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:
@@ -110,7 +112,7 @@ def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:
     from scipy.linalg import eigh
     from scipy.sparse.linalg import ArpackError, eigsh
 
-    dimension = system.free.size
+    dimension = system.size
     if count > _DENSE_SHARE * dimension and dimension < _DENSE_LARGEST:
         whole = system.stiffness.toarray(), system.mass.toarray()
         squares, vectors = eigh(*whole, subset_by_index=[0, count - 1])
@@ -135,11 +137,24 @@ def _diagonal(values: Floats) -> Any:
     return diags(values).tocsr()
 
 
-def _held(model: Model) -> Integers:
-    """Numbers of the coordinates that constraints hold."""
-    mbs = model.mbs
-    constraints = _objects(model, "ConnectorCoordinate")
-    return np.array([_coordinate(mbs, item["markerNumbers"][1]) for item in constraints], dtype=np.int64)
+def transformation(model: Model) -> Any:
+    """Sparse, shape (coordinates, free ones): held coordinates stay 0, clamped ones follow the other wire."""
+    from scipy.sparse import csr_matrix
+
+    mbs, size = model.mbs, model.mbs.systemData.ODE2Size()
+    leader = np.arange(size)
+    held = np.zeros(size, dtype=bool)
+    for item in _objects(model, "ConnectorCoordinate"):
+        first, second = item["markerNumbers"]
+        if int(first) == model.ground:
+            held[_coordinate(mbs, second)] = True
+        else:
+            leader[_coordinate(mbs, second)] = _coordinate(mbs, first)
+    leads = (leader == np.arange(size)) & ~held
+    column = np.cumsum(leads) - 1
+    rows = np.flatnonzero(~held[leader] & ~held)
+    entries = np.ones(rows.size), (rows, column[leader[rows]])
+    return csr_matrix(entries, shape=(size, int(leads.sum())))
 
 
 def _coordinate(mbs: exu.MainSystem, marker: int) -> int:
@@ -171,24 +186,53 @@ def _droppers(model: Model, along: Floats, *, pulled: bool = True) -> Any:
     size, count = model.mbs.systemData.ODE2Size(), len(model.droppers)
     if not count:
         return coo_matrix((size, size)).tocsr()
-    contact, messenger = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    lower, upper = model.mesh.contact.droppers, model.mesh.messenger.droppers
-    span = messenger[upper, :2] - contact[lower, :2]
-    length = np.hypot(*span.T)
+    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    points = np.concatenate([q[:, : model.axes] for q in shapes])
+    lower, upper = (model.mesh.nodes(clamps) for clamps in (model.mesh.lower, model.mesh.upper))
     tension = model.dropper_forces()
     if (tension <= 0).any():
         raise InputError(
             f"dropper {int(np.argmin(tension)) + 1} of the line is slack at rest: modal analysis takes all"
             " droppers as taut; change its length, or the form"
         )
+    block = _link_blocks(points[upper] - points[lower], along, tension if pulled else 0 * tension)
+    blocks = np.block([[block, -block], [-block, block]])
+    axes = np.arange(model.axes)
+    index = model.node_width * np.stack([lower, upper], axis=1)[:, :, None] + axes
+    index = index.reshape(count, -1)
+    rows = np.repeat(index, index.shape[1], axis=1)
+    columns = np.tile(index, (1, index.shape[1]))
+    return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
+
+
+def _links(model: Model) -> Any:
+    """Stiffness of steady arms that are links to the ground."""
+    from scipy.sparse import coo_matrix
+
+    mbs, size = model.mbs, model.mbs.systemData.ODE2Size()
+    matrix = coo_matrix((size, size)).tocsr()
+    for item in _objects(model, "ConnectorSpringDamper"):
+        if item["springForceUserFunction"]:
+            continue
+        ends = [
+            np.array(mbs.GetMarkerOutput(m, exu.OutputVariableType.Position)) for m in item["markerNumbers"]
+        ]
+        span = (ends[1] - ends[0])[None, : model.axes]
+        stiffness = np.array([item["stiffness"]])
+        tension = stiffness * (np.linalg.norm(span) - item["referenceLength"])
+        node = mbs.GetMarker(item["markerNumbers"][0])["nodeNumber"]
+        index = np.array(mbs.systemData.GetNodeLTGODE2(node))[: model.axes]
+        rows, columns = np.repeat(index, index.size), np.tile(index, index.size)
+        block = _link_blocks(span, stiffness, tension)
+        matrix = matrix + coo_matrix((block.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+    return matrix
+
+
+def _link_blocks(span: Floats, along: Floats, tension: Floats) -> Floats:
+    """Shape (links, axes, axes): ``along`` the span, and tension over length across it."""
+    length = np.linalg.norm(span, axis=1)
     axis = span / length[:, None]
     axial = axis[:, :, None] * axis[:, None, :]
-    across = (tension / length)[:, None, None] * (np.eye(2) - axial)
-    block = along[:, None, None] * axial + (across if pulled else 0.0)
-    blocks = np.block([[block, -block], [-block, block]])
-    offset = COORDINATES * len(model.contact.nodes)
-    index = np.hstack(
-        [COORDINATES * lower[:, None] + [0, UP], offset + COORDINATES * upper[:, None] + [0, UP]]
-    )
-    rows, columns = np.repeat(index, 4, axis=1), np.tile(index, (1, 4))
-    return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
+    across = (tension / length)[:, None, None] * (np.eye(span.shape[1]) - axial)
+    blocks: Floats = along[:, None, None] * axial + across
+    return blocks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,20 +11,19 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.laws import dropper_function
 from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.overlay import Overlay, add_overlay
+from catenary_fe.fe.registration import Held, add_arms, add_supports
 from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
-    COORDINATES,
-    UP,
     WireItems,
     WireLine,
     add_ground_coordinate,
-    add_overlay,
     add_wire,
     anchor_and_tension,
-    hold,
 )
-from catenary_fe.system import Catenary
+from catenary_fe.system import Catenary, Wire
 
 Floats = NDArray[np.float64]
 
@@ -32,14 +32,14 @@ Floats = NDArray[np.float64]
 class Installation:
     """What the crew sets: how the wires hang, and the droppers, arms and supports that make them do so.
 
-    contact, messenger : the wires' static lines
+    lines : the wires' static lines, in the order of the mesh
     dropper_lengths : [m], shape (droppers,), stress-free
-    arm_forces : [N], shape (spans + 1,), upward on the contact wire where it hangs, 0 without an arm
-    support_forces : [N], shape (spans + 1,), upward on the messenger wire where it hangs
+    arm_forces : [N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires where they hang:
+        to the left (in space only) and up; 0 without an arm
+    support_forces : [N], shape (spans + 1, axes - 1), likewise, on the messenger wire
     """
 
-    contact: WireLine
-    messenger: WireLine
+    lines: tuple[WireLine, ...]
     dropper_lengths: Floats
     arm_forces: Floats
     support_forces: Floats
@@ -50,38 +50,62 @@ class Model:
     """An Exudyn system of a catenary, and where its parts are.
 
     mbs : the system, not yet assembled
+    wires : contact wires, messenger wire, stitch wires, as in the mesh
     droppers : numbers of the dropper connectors
     dropper_lengths : [m], stress-free
     ground : number of a coordinate marker that never moves
-    held_arms, held_supports : constraints by support number, in a model of the installation
+    held : constraints that hold the wires, in a model of the installation
     """
 
     mbs: Any
     catenary: Catenary
     mesh: Mesh
-    contact: WireItems
-    messenger: WireItems
+    wires: tuple[WireItems, ...]
     droppers: list[int]
     dropper_lengths: Floats
     ground: int
-    held_arms: dict[int, int]
-    held_supports: dict[int, int]
+    held: Held
+
+    @property
+    def contact(self) -> WireItems:
+        """The contact wire; of two, the right one."""
+        return self.wires[0]
+
+    @property
+    def contacts(self) -> tuple[WireItems, ...]:
+        """The contact wires."""
+        return self.wires[: self.mesh.contact_wires]
+
+    @property
+    def messenger(self) -> WireItems:
+        """The messenger wire."""
+        return self.wires[self.mesh.contact_wires]
 
     @property
     def contact_wire_height(self) -> float:
         """[m], nominal."""
         return self.catenary.contact_wire_height
 
-    def wire_shapes(self, coordinates: Floats) -> tuple[Floats, Floats]:
-        """Total coordinates of the nodes of contact and messenger wire, each of shape (nodes, 4)."""
-        n = COORDINATES * len(self.contact.nodes)
-        m = n + COORDINATES * len(self.messenger.nodes)
-        contact = self.contact.line.coordinates() + coordinates[:n].reshape(-1, COORDINATES)
-        messenger = self.messenger.line.coordinates() + coordinates[n:m].reshape(-1, COORDINATES)
-        return contact, messenger
+    @property
+    def axes(self) -> int:
+        """2 in the plane, 3 in space; up is the last one."""
+        return self.contact.line.axes
+
+    @property
+    def node_width(self) -> int:
+        """Coordinates of a node. All wires' nodes come first among the system's coordinates."""
+        return self.contact.coordinates
+
+    def wire_shapes(self, coordinates: Floats) -> list[Floats]:
+        """Total coordinates of each wire's nodes, each of shape (nodes, 2 * axes)."""
+        ends = self.node_width * self.mesh.first_nodes
+        return [
+            wire.line.coordinates() + coordinates[a:b].reshape(-1, self.node_width)
+            for wire, a, b in zip(self.wires, ends[:-1], ends[1:], strict=True)
+        ]
 
     def held_force(self, constraint: int) -> float:
-        """[N] upward, with which a constraint holds its wire at the current state."""
+        """[N] with which a constraint holds its wire at the current state."""
         return float(self.mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
 
     def dropper_forces(self) -> Floats:
@@ -96,73 +120,115 @@ def dropper_damping(catenary: Catenary) -> Floats:
     return np.array([d.damping + catenary.damping.beta * d.stiffness for d in catenary.droppers])
 
 
+def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
+    """Each wire's parameters, in the order of the mesh."""
+    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires + [catenary.messenger_wire]
+    if catenary.stitch_wire:
+        lines += [catenary.stitch_wire] * len(mesh.stitch_ends)
+    return lines
+
+
+def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
+    """[N], for each wire shape (elements,): nominal pull along the track.
+
+    Between a stitch wire's clamps the two wires share the messenger wire's tension.
+    """
+    pulls = [
+        np.full(wire.x.size - 1, kind.tension)
+        for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
+    ]
+    for a, b in mesh.stitch_ends:
+        assert catenary.stitch_wire is not None
+        pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
+    return pulls
+
+
 def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, held: bool = False) -> Model:
-    """Build wires, droppers, supports and steady arms.
+    """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie.
 
     held : instead of springs, constraints hold the messenger wire at its supports and the contact wire at
         the arms that shall give it its design height: their forces are what an installation sets.
     """
     mbs = new_system()
-    contact = add_wire(mbs, catenary.contact_wire, installation.contact)
-    messenger = add_wire(mbs, catenary.messenger_wire, installation.messenger)
+    kinds = wire_kinds(catenary, mesh)
+    wires = tuple(add_wire(mbs, kind, line) for kind, line in zip(kinds, installation.lines, strict=True))
     ground = add_ground_coordinate(mbs)
-    for wire, items in ((catenary.contact_wire, contact), (catenary.messenger_wire, messenger)):
+    for wire, items in zip(kinds[: mesh.first_stitch], wires, strict=False):
         anchor_and_tension(mbs, items, ground, wire)
-    masses = point_masses(catenary, mesh, installation.dropper_lengths)
-    add_overlay(mbs, (contact, messenger), masses, catenary.damping)
-    droppers = _add_droppers(mbs, catenary, mesh, contact, messenger, installation.dropper_lengths)
-    held_arms = _add_arms(mbs, catenary, mesh, contact, ground, installation, held)
-    held_supports = _add_supports(mbs, catenary, mesh, messenger, ground, installation, held)
+    add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
+    _clamp_stitch_wires(mbs, mesh, wires)
+    droppers = _add_droppers(mbs, catenary, mesh, wires, installation.dropper_lengths)
+    contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
+    arms = add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces, held)
+    supports = add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces, held)
     lengths = installation.dropper_lengths
-    return Model(mbs, catenary, mesh, contact, messenger, droppers, lengths, ground, held_arms, held_supports)
+    return Model(mbs, catenary, mesh, wires, droppers, lengths, ground, Held(arms, supports))
 
 
-def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> Floats:
-    """[kg], shape (nodes,), of clamps, droppers and arms by node, contact wire first."""
-    on_contact, on_messenger = np.zeros(mesh.contact.x.size), np.zeros(mesh.messenger.x.size)
-    for i, dropper in enumerate(catenary.droppers):
-        half = dropper.mass_per_length * lengths[i] / 2
-        on_contact[mesh.contact.droppers[i]] += dropper.contact_wire_clamp_mass + half
-        on_messenger[mesh.messenger.droppers[i]] += dropper.messenger_clamp_mass + half
-    for i, support in list(enumerate(catenary.supports))[1:-1]:
-        if support.steady_arm:
-            on_contact[mesh.contact.supports[i]] += support.steady_arm.mass
-    return np.concatenate([on_contact, on_messenger])
+def _overlay(
+    catenary: Catenary, mesh: Mesh, installation: Installation, wires: Sequence[WireItems]
+) -> Overlay:
+    masses, hanging = point_masses(catenary, mesh, installation.dropper_lengths)
+    pull = None
+    if wires[0].line.axes == 3 and any(span.curve_radius for span in catenary.spans):
+        pull = np.concatenate(curve_pulls(catenary, mesh))
+    return Overlay(masses, hanging, catenary.damping, pull)
 
 
-def _tension_only(mbs, t, itemNumber, deltaL, deltaL_t, stiffness, damping, force):  # type: ignore[no-untyped-def]
-    return one_sided(deltaL, deltaL_t, stiffness, damping)
+def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
+    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ).
 
-
-def one_sided(stretch: Any, rate: Any, stiffness: Any, damping: Any) -> Any:
-    """Symbolic force of a spring and damper that act one way only.
-
-    The damper's part is at most the spring's: the force is continuous where the spring goes slack, which
-    Newton's method needs, and never turns round.
+    Seen from a track that curves with the radius R, a straight wire under the tension T bends as if a force
+    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
     """
-    symbolic = exu.symbolic
-    spring = symbolic.max(symbolic.Real(0.0), stiffness * stretch)
-    return spring + symbolic.max(-spring, symbolic.min(spring, damping * rate))
+    curvature = np.array([span.curvature for span in catenary.spans])
+    found = []
+    for wire, kind, pulls in zip(
+        mesh.wires, wire_kinds(catenary, mesh), element_pulls(catenary, mesh), strict=True
+    ):
+        middle = (wire.x[:-1] + wire.x[1:]) / 2
+        span = np.searchsorted(catenary.support_positions, middle) - 1
+        found.append(pulls * curvature[span] / kind.mass_per_length)
+    return found
 
 
-def dropper_function(mbs: exu.MainSystem) -> object:
-    """The force law of droppers, in C++; one object serves all droppers of a system, which keeps it alive."""
-    from exudyn.advancedUtilities import CreateSymbolicUserFunction
+def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Floats, Floats]:
+    """[kg], shape (nodes of all wires,) each: masses that move with the nodes, and that weigh on them.
 
-    function = CreateSymbolicUserFunction(
-        mbs, _tension_only, "springForceUserFunction", itemTypeName="ObjectConnectorSpringDamper"
-    )
-    mbs.variables["tension only"] = function
-    return function
+    Of clamps, droppers and arms.
+    """
+    masses = np.zeros(mesh.first_nodes[-1])
+    half = np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
+    below = np.array([d.contact_wire_clamp_mass for d in catenary.droppers])
+    above = np.array([d.messenger_clamp_mass for d in catenary.droppers])
+    np.add.at(masses, mesh.nodes(mesh.lower), below + half)
+    np.add.at(masses, mesh.nodes(mesh.upper), above + half)
+    if catenary.stitch_wire:
+        ends = mesh.first_nodes[mesh.contact_wires] + mesh.stitch_ends
+        masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
+    hanging = masses.copy()
+    for i, support in list(enumerate(catenary.supports))[1:-1]:
+        if arm := support.steady_arm:
+            for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False):
+                masses[first + wire.supports[i]] += arm.tip_mass
+                hanging[first + wire.supports[i]] += arm.hanging_mass
+    return masses, hanging
+
+
+def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems]) -> None:
+    messenger = wires[mesh.contact_wires]
+    for stitch, ends in zip(wires[mesh.first_stitch :], mesh.stitch_ends, strict=True):
+        for node, on_messenger in zip((0, len(stitch.nodes) - 1), ends, strict=True):
+            for axis in range(stitch.line.axes):
+                markers = [
+                    messenger.coordinate_marker(mbs, int(on_messenger), axis),
+                    stitch.coordinate_marker(mbs, node, axis),
+                ]
+                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
 
 
 def _add_droppers(
-    mbs: exu.MainSystem,
-    catenary: Catenary,
-    mesh: Mesh,
-    contact: WireItems,
-    messenger: WireItems,
-    lengths: Floats,
+    mbs: exu.MainSystem, catenary: Catenary, mesh: Mesh, wires: Sequence[WireItems], lengths: Floats
 ) -> list[int]:
     if not catenary.droppers:
         return []
@@ -173,8 +239,8 @@ def _add_droppers(
             mbs.AddObject(
                 eii.ObjectConnectorSpringDamper(
                     markerNumbers=[
-                        contact.position_marker(mbs, int(mesh.contact.droppers[i])),
-                        messenger.position_marker(mbs, int(mesh.messenger.droppers[i])),
+                        wires[clamps.wire[i]].position_marker(mbs, int(clamps.node[i]))
+                        for clamps in (mesh.lower, mesh.upper)
                     ],
                     referenceLength=float(lengths[i]),
                     stiffness=dropper.stiffness,
@@ -185,59 +251,3 @@ def _add_droppers(
         )
         for i, dropper in enumerate(catenary.droppers)
     ]
-
-
-def _add_arms(
-    mbs: exu.MainSystem,
-    catenary: Catenary,
-    mesh: Mesh,
-    contact: WireItems,
-    ground: int,
-    installation: Installation,
-    held: bool,
-) -> dict[int, int]:
-    """Steady arms; the contact wire's ends are held where they are."""
-    last = len(catenary.supports) - 1
-    constraints = {}
-    for i, support in enumerate(catenary.supports):
-        node, arm = int(mesh.contact.supports[i]), support.steady_arm
-        if i in (0, last):
-            hold(mbs, contact, node, UP, ground)
-        elif arm and held and arm.holds_design_height:
-            constraints[i] = hold(mbs, contact, node, UP, ground)
-        elif arm:
-            marker = contact.coordinate_marker(mbs, node, UP)
-            _add_spring(mbs, [ground, marker], arm.stiffness, arm.damping, installation.arm_forces[i])
-    return constraints
-
-
-def _add_supports(
-    mbs: exu.MainSystem,
-    catenary: Catenary,
-    mesh: Mesh,
-    messenger: WireItems,
-    ground: int,
-    installation: Installation,
-    held: bool,
-) -> dict[int, int]:
-    last = len(catenary.supports) - 1
-    constraints = {}
-    for i, support in enumerate(catenary.supports):
-        node, stiffness = int(mesh.messenger.supports[i]), support.messenger_stiffness
-        if held or i in (0, last) or stiffness is None:
-            constraints[i] = hold(mbs, messenger, node, UP, ground)
-        else:
-            marker = messenger.coordinate_marker(mbs, node, UP)
-            force = installation.support_forces[i]
-            _add_spring(mbs, [ground, marker], stiffness, support.messenger_damping, force)
-    return constraints
-
-
-def _add_spring(
-    mbs: exu.MainSystem, markers: list[int], stiffness: float, damping: float, preload: float
-) -> None:
-    """A vertical spring to the ground that pushes up by ``preload`` where the wire hangs."""
-    mbs.AddObject(
-        eii.ObjectConnectorCoordinateSpringDamper(markerNumbers=markers, stiffness=stiffness, damping=damping)
-    )
-    mbs.AddLoad(eii.LoadCoordinate(markerNumber=markers[1], load=float(preload)))

@@ -3,76 +3,80 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.overlay import Overlay, add_overlay
 from catenary_fe.fe.solver import new_system, solve_static
-from catenary_fe.fe.wire import (
-    COORDINATES,
-    UP,
-    WireLine,
-    add_ground_coordinate,
-    add_overlay,
-    add_wire,
-    anchor_and_tension,
-    hold,
-)
+from catenary_fe.fe.wire import WireLine, add_ground_coordinate, add_wire, anchor_and_tension, hold
 from catenary_fe.system import Wire
 
 Floats = NDArray[np.float64]
+At = tuple[int, int]  # node, axis
+
+
+@dataclass(frozen=True)
+class Cut:
+    """How a wire is held and loaded where its droppers and supports are cut.
+
+    held : (node, axis) to the coordinate [m] at which it is held
+    loads : (node, axis) to a force [N]
+    springs : node to stiffness [N/m] and force-free height [m] of a vertical spring to the ground
+    side_pull : as in :class:`~catenary_fe.fe.overlay.Overlay`
+    """
+
+    held: Mapping[At, float]
+    loads: Mapping[At, float] = field(default_factory=dict)
+    springs: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    side_pull: Floats | None = None
 
 
 @dataclass(frozen=True)
 class WireStatics:
     """Static equilibrium of one wire.
 
-    x, z : [m], shape (nodes,)
-    dz_dx : shape (nodes,), inclination
-    reactions : [N], force that holds each held node up, by node number
+    points : [m], shape (nodes, axes)
+    inclinations : shape (nodes, axes - 1), derivatives along the track
+    reactions : [N], force that holds each held coordinate, by node and axis
     """
 
-    x: Floats
-    z: Floats
-    dz_dx: Floats
-    reactions: dict[int, float]
+    points: Floats
+    inclinations: Floats
+    reactions: dict[At, float]
+
+    @classmethod
+    def from_coordinates(cls, q: Floats, reactions: dict[At, float] | None = None) -> WireStatics:
+        """From total coordinates of shape (nodes, 2 * axes)."""
+        axes = q.shape[1] // 2
+        return cls(q[:, :axes], q[:, axes + 1 :] / q[:, axes : axes + 1], reactions or {})
 
 
-def solve_wire(
-    wire: Wire,
-    line: WireLine,
-    held: Mapping[int, float],
-    loads: Mapping[int, float],
-    springs: Mapping[int, tuple[float, float]],
-    *,
-    what: str,
-) -> WireStatics:
-    """Equilibrium of a wire under its weight, its tension and vertical forces.
+def solve_wire(wire: Wire, line: WireLine, cut: Cut, *, what: str) -> WireStatics:
+    """Equilibrium of a wire under its weight, its tension and what is left of the cuts.
 
     line : where the wire is started from
-    held : node number to height [m] at which that node is held
-    loads : node number to upward force [N] on that node
-    springs : node number to stiffness [N/m] and force-free height [m] of a vertical spring to the ground
     what : the case in words, for errors
 
     Raises SolverError if there is no convergence.
     """
     mbs = new_system()
     items = add_wire(mbs, wire, line)
-    add_overlay(mbs, [items])
+    add_overlay(mbs, [items], Overlay(side_pull=cut.side_pull))
     ground = add_ground_coordinate(mbs)
     anchor_and_tension(mbs, items, ground, wire)
-    constraints = {node: hold(mbs, items, node, UP, ground) for node in held}
-    for node, height in held.items():
-        mbs.SetObjectParameter(constraints[node], "offset", height - line.z[node])
-    for node, force in loads.items():
-        marker = items.coordinate_marker(mbs, node, UP)
-        mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=force))
-    for node, (stiffness, height) in springs.items():
-        markers = [ground, items.coordinate_marker(mbs, node, UP)]
+    constraints = {
+        (node, axis): hold(mbs, items, node, axis, ground, value - float(line.points[node, axis]))
+        for (node, axis), value in cut.held.items()
+    }
+    for (node, axis), force in cut.loads.items():
+        marker = items.coordinate_marker(mbs, node, axis)
+        mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=float(force)))
+    for node, (stiffness, height) in cut.springs.items():
+        markers = [ground, items.coordinate_marker(mbs, node, items.up)]
         offset = height - float(line.z[node])
         mbs.AddObject(
             eii.ObjectConnectorCoordinateSpringDamper(
@@ -81,9 +85,9 @@ def solve_wire(
         )
     mbs.Assemble()
     solve_static(mbs, what=what)
-    q = line.coordinates() + mbs.systemData.GetODE2Coordinates().reshape(-1, COORDINATES)
+    q = line.coordinates() + mbs.systemData.GetODE2Coordinates().reshape(-1, items.coordinates)
     reactions = {
-        node: float(mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
-        for node, constraint in constraints.items()
+        at: float(mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
+        for at, constraint in constraints.items()
     }
-    return WireStatics(q[:, 0], q[:, 1], q[:, 3] / q[:, 2], reactions)
+    return WireStatics.from_coordinates(q, reactions)

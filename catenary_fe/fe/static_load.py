@@ -13,24 +13,30 @@ from catenary_fe.fe.contact import locate
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model
 from catenary_fe.fe.solver import solve_static
-from catenary_fe.fe.wire import UP
 from catenary_fe.system import Catenary
 
 Floats = NDArray[np.float64]
 
 
 class LoadedCatenary:
-    """A catenary whose contact wire carries vertical forces that can be moved and solved for again."""
+    """A catenary whose contact wire carries vertical forces that can be moved and solved for again.
+
+    Two contact wires share each force.
+    """
 
     def __init__(self, catenary: Catenary, mesh: Mesh, installation: Installation, forces: int = 1) -> None:
         self.model: Model = build_model(catenary, mesh, installation)
-        mbs, wire = self.model.mbs, self.model.contact
+        mbs = self.model.mbs
         self._markers = [
-            mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=wire.elements[0], localPosition=[0, 0, 0]))
+            [
+                mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=wire.elements[0], localPosition=[0, 0, 0]))
+                for wire in self.model.contacts
+            ]
             for _ in range(forces)
         ]
         self._loads = [
-            mbs.AddLoad(eii.LoadForceVector(markerNumber=m, loadVector=[0, 0, 0])) for m in self._markers
+            [mbs.AddLoad(eii.LoadForceVector(markerNumber=m, loadVector=[0, 0, 0])) for m in markers]
+            for markers in self._markers
         ]
         mbs.Assemble()
         self.solve([0.0] * forces, [0.0] * forces)
@@ -40,22 +46,26 @@ class LoadedCatenary:
 
         Starts from the state solved for last. Raises SolverError if there is no convergence.
         """
-        mbs, wire = self.model.mbs, self.model.contact
-        places = [locate(wire, float(x)) for x in positions]
-        for i, (element, local) in enumerate(places):
-            mbs.SetMarkerParameter(self._markers[i], "bodyNumber", wire.elements[element])
-            mbs.SetMarkerParameter(self._markers[i], "localPosition", [local, 0, 0])
-            mbs.SetLoadParameter(self._loads[i], "loadVector", [0, float(forces[i]), 0])
+        mbs = self.model.mbs
+        for x, force, markers, loads in zip(positions, forces, self._markers, self._loads, strict=True):
+            for wire, marker, load in zip(self.model.contacts, markers, loads, strict=True):
+                element, local = locate(wire, float(x))
+                mbs.SetMarkerParameter(marker, "bodyNumber", wire.elements[element])
+                mbs.SetMarkerParameter(marker, "localPosition", [local, 0, 0])
+                share = float(force) / len(loads)
+                mbs.SetLoadParameter(load, "loadVector", list(share * np.eye(3)[wire.up]))
         what = ", ".join(f"{f:g} N at {x:g} m" for x, f in zip(positions, forces, strict=True))
         solve_static(mbs, what=f"static load ({what})")
-        return self.heights(places)
+        return self.heights(positions)
 
-    def heights(self, places: Sequence[tuple[int, float]]) -> Floats:
-        """[m] of the contact wire at (element, arc length inside it)."""
-        position = exu.OutputVariableType.Position
-        output = self.model.mbs.GetObjectOutputBody
-        elements = self.model.contact.elements
-        return np.array([output(elements[e], position, [s, 0, 0])[UP] for e, s in places])
+    def heights(self, positions: Sequence[float] | Floats) -> Floats:
+        """[m] of the contact wire at positions [m] along the track; of two wires, their mean."""
+        output, position = self.model.mbs.GetObjectOutputBody, exu.OutputVariableType.Position
+        found = np.zeros(len(positions))
+        for wire in self.model.contacts:
+            places = [locate(wire, float(x)) for x in positions]
+            found += [output(wire.elements[e], position, [s, 0, 0])[wire.up] for e, s in places]
+        return found / len(self.model.contacts)
 
 
 def lift_curve(
@@ -68,7 +78,7 @@ def lift_curve(
 ) -> Floats:
     """[m], shape (points,): lift of the contact wire at each position [m] under a force [N] there."""
     loaded = LoadedCatenary(catenary, mesh, installation)
-    before = loaded.heights([locate(loaded.model.contact, float(x)) for x in positions])
+    before = loaded.heights(positions)
     lifts = np.empty(positions.size)
     for i, x in enumerate(positions):
         lifts[i] = loaded.solve([x], [force])[0] - before[i]

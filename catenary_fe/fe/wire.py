@@ -1,66 +1,85 @@
-"""A tensioned wire as a row of ANCF cable elements."""
+"""A tensioned wire as a row of ANCF cable elements, in the plane or in space.
+
+Arrays of points and slopes have the plane's two axes (along the track, up) or the space's three (along the
+track, to the left, up) as their last one: up is always its last entry.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
-from catenary_fe.system import RayleighDamping, Wire
+from catenary_fe.system import Wire
 
 Floats = NDArray[np.float64]
 
-GRAVITY = 9.81  # [m/s²]
-ALONG, UP = 0, 1  # the plane's axes: along the track, vertical
-COORDINATES = 4  # of a node: position along and up, slope along and up
+ALONG = 0
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(5)
 
 
 @dataclass(frozen=True)
 class WireLine:
-    """Where a wire hangs: positions and unit slopes at its nodes, arc lengths between them.
+    """Where a wire hangs: positions and slopes at its nodes, arc lengths between them.
 
-    x, z : [m], shape (nodes,)
-    slope_x, slope_z : shape (nodes,), derivatives along the wire
+    points : [m], shape (nodes, axes)
+    slopes : shape (nodes, axes), derivatives of the points along the wire
     lengths : [m], shape (nodes - 1,), of the elements under the wire's nominal tension
     """
 
-    x: Floats
-    z: Floats
-    slope_x: Floats
-    slope_z: Floats
+    points: Floats
+    slopes: Floats
     lengths: Floats
 
     @classmethod
-    def through(cls, wire: Wire, x: ArrayLike, z: ArrayLike, dz_dx: ArrayLike) -> WireLine:
+    def through(
+        cls, wire: Wire, points: ArrayLike, inclinations: ArrayLike, pulls: ArrayLike | None = None
+    ) -> WireLine:
         """The wire that hangs through given points with given inclinations (cubic between the points).
 
-        Its pull along the track is the nominal tension everywhere, so where it is inclined it is stretched
-        a little more than nominally.
+        points : [m], shape (nodes, axes)
+        inclinations : shape (nodes, axes - 1), derivatives along the track of all axes but the first
+        pulls : [N], shape (nodes - 1,), pull along the track in each element; unset: the nominal tension.
+            Where the wire is inclined it is stretched a little more than that.
         """
-        x, z, dz_dx = (np.array(values, dtype=float) for values in (x, z, dz_dx))
-        h = np.diff(x)[:, None]
-        xi = (_GAUSS_X + 1) / 2
+        points, rises = np.array(points, dtype=float), np.array(inclinations, dtype=float)
+        tension = np.full(len(points) - 1, wire.tension) if pulls is None else np.asarray(pulls, dtype=float)
+        h = np.diff(points[:, 0])[:, None, None]
+        xi = ((_GAUSS_X + 1) / 2)[:, None]
         inclination = (
-            6 * (xi - xi**2) * np.diff(z)[:, None] / h
-            + (1 - 4 * xi + 3 * xi**2) * dz_dx[:-1, None]
-            + (3 * xi**2 - 2 * xi) * dz_dx[1:, None]
+            6 * (xi - xi**2) * np.diff(points[:, 1:], axis=0)[:, None] / h
+            + (1 - 4 * xi + 3 * xi**2) * rises[:-1, None]
+            + (3 * xi**2 - 2 * xi) * rises[1:, None]
         )
-        arc = np.hypot(1.0, inclination)
-        lengths = h[:, 0] * ((arc / _stretch(wire, arc)) @ _GAUSS_W) / 2
-        arc = np.hypot(1.0, dz_dx)
-        slope_x = _stretch(wire, arc) / arc
-        return cls(x, z, slope_x, dz_dx * slope_x, lengths)
+        arc = np.sqrt(1 + (inclination**2).sum(axis=2))
+        stretch = 1 + (arc * tension[:, None] - wire.tension) / wire.axial_stiffness
+        lengths = h[:, 0, 0] * ((arc / stretch) @ _GAUSS_W) / 2
+        at_nodes = np.concatenate([tension[:1], (tension[:-1] + tension[1:]) / 2, tension[-1:]])
+        arc = np.sqrt(1 + (rises**2).sum(axis=1))
+        slope = (1 + (arc * at_nodes - wire.tension) / wire.axial_stiffness) / arc
+        return cls(points, np.column_stack([slope, rises * slope[:, None]]), lengths)
+
+    @property
+    def axes(self) -> int:
+        """2 in the plane, 3 in space."""
+        return int(self.points.shape[1])
+
+    @property
+    def x(self) -> Floats:
+        """[m], shape (nodes,), along the track."""
+        return self.points[:, 0]
+
+    @property
+    def z(self) -> Floats:
+        """[m], shape (nodes,), up."""
+        return self.points[:, -1]
 
     def coordinates(self) -> Floats:
-        """Shape (nodes, 4): reference coordinates of the nodes."""
-        return np.column_stack([self.x, self.z, self.slope_x, self.slope_z])
+        """Shape (nodes, 2 * axes): reference coordinates of the nodes, points then slopes."""
+        return np.hstack([self.points, self.slopes])
 
 
 @dataclass(frozen=True)
@@ -70,6 +89,16 @@ class WireItems:
     nodes: list[int]
     elements: list[int]
     line: WireLine
+
+    @property
+    def up(self) -> int:
+        """Number of the vertical axis, among a point's and also among Exudyn's own vectors."""
+        return self.line.axes - 1
+
+    @property
+    def coordinates(self) -> int:
+        """How many a node has: its point, then its slope."""
+        return 2 * self.line.axes
 
     def position_marker(self, mbs: exu.MainSystem, node: int) -> int:
         """A marker on the wire's node of this number."""
@@ -82,13 +111,14 @@ class WireItems:
 
 def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
     """Add nodes and elements of a wire that carries its tension along the given line."""
-    nodes = [
-        int(mbs.AddNode(eii.NodePoint2DSlope1(referenceCoordinates=list(row)))) for row in line.coordinates()
-    ]
+    in_space = line.axes == 3
+    new_node = eii.NodePointSlope1 if in_space else eii.NodePoint2DSlope1
+    new_element = eii.ObjectANCFCable if in_space else eii.ObjectANCFCable2D
+    nodes = [int(mbs.AddNode(new_node(referenceCoordinates=list(row)))) for row in line.coordinates()]
     elements = [
         int(
             mbs.AddObject(
-                eii.ObjectANCFCable2D(
+                new_element(
                     length=length,
                     massPerLength=wire.mass_per_length,
                     bendingStiffness=wire.bending_stiffness,
@@ -104,51 +134,6 @@ def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
     return WireItems(nodes, elements, line)
 
 
-def add_overlay(
-    mbs: exu.MainSystem,
-    wires: Sequence[WireItems],
-    point_masses: Floats | None = None,
-    damping: RayleighDamping | None = None,
-) -> None:
-    """Add weight, point masses and Rayleigh damping of the system's wires, as one object.
-
-    wires : all wires of the system so far, in the order they were added, before anything else with nodes
-    point_masses : [kg], shape (nodes of all wires,)
-
-    The damping matrix includes the tension's stiffness, on which a wire's waves live; the cable's own damping
-    knows only of EA and EI. The weight as one constant vector costs a third of a load on each element.
-    """
-    from scipy.sparse import csr_matrix, diags
-
-    mbs.Assemble()
-    elements = [element for wire in wires for element in wire.elements]
-    nodes = [node for wire in wires for node in wire.nodes]
-    M = mass_matrix(mbs, elements)
-    up = np.tile(np.eye(COORDINATES)[UP], len(nodes))
-    matrices: dict[str, Any] = {}
-    if point_masses is not None and point_masses.any():
-        moves = np.tile([1.0, 1.0, 0.0, 0.0], len(nodes))
-        added = diags(np.repeat(point_masses, COORDINATES) * moves)
-        matrices["massMatrix"] = exu.MatrixContainer(csr_matrix(added))
-        weight = -GRAVITY * (M + added) @ up
-    else:
-        weight = -GRAVITY * M @ up
-    if damping and (damping.alpha or damping.beta):
-        D = csr_matrix(damping.alpha * M + damping.beta * stiffness_matrix(mbs, elements))
-        matrices["dampingMatrix"] = exu.MatrixContainer(D)
-    nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
-    mbs.AddObject(
-        eii.ObjectGenericODE2(
-            nodeNumbers=nodes,
-            forceVector=weight,
-            # with a function of its own the object adds its matrices to the Jacobian as they are; without
-            # one Exudyn differentiates it numerically, coordinate by coordinate
-            jacobianUserFunction=lambda *_: nothing,
-            **matrices,
-        )
-    )
-
-
 def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire: Wire) -> None:
     """Fix the first node along the track; let the last one move there, pulled by the weights."""
     hold(mbs, items, 0, ALONG, ground)
@@ -156,10 +141,12 @@ def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire:
     mbs.AddLoad(eii.LoadCoordinate(markerNumber=end, load=wire.tension))
 
 
-def hold(mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int) -> int:
-    """Hold one coordinate of a node where it is in the reference line; returns the constraint's number."""
+def hold(
+    mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int, offset: float = 0.0
+) -> int:
+    """Hold a coordinate of a node ``offset`` from where it is in the line; returns the constraint's number."""
     markers = [ground, items.coordinate_marker(mbs, node, axis)]
-    return int(mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers)))
+    return int(mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset)))
 
 
 def add_ground_coordinate(mbs: exu.MainSystem) -> int:
@@ -180,8 +167,3 @@ def hermite(xi: ArrayLike, length: ArrayLike) -> Floats:
         ],
         axis=-1,
     )
-
-
-def _stretch(wire: Wire, arc: Floats) -> Floats:
-    """Length over nominal length of a wire with the nominal pull along the track; arc = ds/dx."""
-    return 1 + (arc - 1) * wire.tension / wire.axial_stiffness

@@ -14,9 +14,6 @@ from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.solver import new_system, solve_static
 from catenary_fe.fe.wire import (
     ALONG,
-    COORDINATES,
-    GRAVITY,
-    UP,
     WireItems,
     WireLine,
     add_ground_coordinate,
@@ -26,10 +23,11 @@ from catenary_fe.fe.wire import (
     hold,
 )
 from catenary_fe.fe.wire_problem import Function, WireProblem
-from catenary_fe.system import InputError
+from catenary_fe.system import GRAVITY, InputError
 from catenary_fe.theory import MovingForce
 
 Floats = NDArray[np.float64]
+UP, COORDINATES = 1, 4  # the plane's
 _DIFFERENCE = 1e-4  # [m] for slopes of the initial functions
 
 
@@ -148,7 +146,7 @@ def _initial_line(problem: WireProblem, height: float) -> WireLine:
     deflection, slope = np.zeros(x.size), np.zeros(x.size)
     if problem.initial_deflection is not None:
         deflection, slope = _values_and_slopes(problem.initial_deflection, x)
-    return WireLine.through(problem.wire, x, height + deflection, slope)
+    return WireLine.through(problem.wire, np.column_stack([x, height + deflection]), slope[:, None])
 
 
 def _values_and_slopes(function: Function, x: Floats) -> tuple[Floats, Floats]:

@@ -10,8 +10,9 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.contact import MovingContact, add_pantograph, contact_function, locate
-from catenary_fe.fe.wire import UP, WireItems
+from catenary_fe.fe.contact import MovingContact, locate
+from catenary_fe.fe.pantograph import add_pantographs
+from catenary_fe.fe.wire import WireItems
 from catenary_fe.fe.wire_problem import Load, SlidingPantograph
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
@@ -26,6 +27,11 @@ class WireTrack:
     contact: WireItems
     ground: int
     contact_wire_height: float
+
+    @property
+    def contacts(self) -> tuple[WireItems]:
+        """The one wire."""
+        return (self.contact,)
 
 
 class WireLoad(Protocol):
@@ -68,7 +74,9 @@ class _Place:
             return float("nan")
         body = self._track.contact.elements[self.element]
         position = exu.OutputVariableType.Position
-        return float(self._track.mbs.GetObjectOutputBody(body, position, [self.local, 0, 0])[UP])
+        return float(
+            self._track.mbs.GetObjectOutputBody(body, position, [self.local, 0, 0])[self._track.contact.up]
+        )
 
 
 class _Force:
@@ -117,22 +125,23 @@ class _Pantograph:
 
     def __init__(self, track: WireTrack, sliding: SlidingPantograph) -> None:
         self._mbs, self._sliding = track.mbs, sliding
-        function = contact_function(track)
-        self._items = add_pantograph(track, sliding.pantograph, sliding.uplift, function)
+        (self._items,) = add_pantographs(track, [(sliding.pantograph, sliding.uplift)])
+        (self._point,) = self._items.contacts
         self._contact = MovingContact(track, [self._items])
         self._place = _Place(track, sliding.start, sliding.speed)
 
     def move_to(self, t: float) -> None:
         x = self._place.move_to(t)
         if not self._place.on_wire:
-            self._mbs.SetObjectParameter(self._items.connector, "activeConnector", False)
+            self._mbs.SetObjectParameter(self._point.connector, "activeConnector", False)
             return
         self._contact.move_to(np.array([x]), self._sliding.speed)
 
     def force(self) -> float:
         if not self._place.on_wire:
             return 0.0
-        return float(self._mbs.GetObjectOutput(self._items.connector, exu.OutputVariableType.Force)[UP])
+        force = self._mbs.GetObjectOutput(self._point.connector, exu.OutputVariableType.Force)
+        return float(force[self._point.wire.up])
 
     def deflection(self) -> float:
         return self._place.height()
@@ -141,4 +150,4 @@ class _Pantograph:
         return float(self._mbs.systemData.GetODE2Coordinates()[self._index()])
 
     def _index(self) -> int:
-        return int(self._mbs.systemData.GetNodeLTGODE2(self._items.nodes[0])[0])
+        return int(self._mbs.systemData.GetNodeLTGODE2(self._items.heights[0][0])[0])

@@ -9,7 +9,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.model import dropper_function
+from catenary_fe.fe.laws import dropper_function
 from catenary_fe.fe.solver import solve_dynamic
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_velocity

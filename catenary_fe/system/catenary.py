@@ -4,91 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from math import tan
 from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from catenary_fe.system.parameters import NonEmpty, NonNegative, Number, Parameters, Positive, Text
-from catenary_fe.system.wire import Dropper, Wire
-
-
-class SteadyArm(Parameters):
-    """Registration of the contact wire at a support: in the plane a vertical spring and a mass."""
-
-    stiffness: NonNegative
-    """[N/m] vertical, at the contact wire"""
-    mass: NonNegative = 0.0
-    """[kg] of arm and clamp that moves with the wire"""
-    damping: NonNegative = 0.0
-    """[N s/m] vertical"""
-    holds_design_height: bool = True
-    """true: preloaded so that the wire has its design height here; false: it carries `preload`"""
-    preload: Number = 0.0
-    """[N] upward force on the wire at its design height, where `holds_design_height` is false"""
-
-
-class Support(Parameters):
-    """What holds the wires at a mast. The first and the last support of a line anchor both wires."""
-
-    messenger_stiffness: Positive | None = None
-    """[N/m] vertical, under the messenger wire; unset: rigid"""
-    messenger_damping: NonNegative = 0.0
-    """[N s/m] vertical, beside the stiffness"""
-    steady_arm: SteadyArm | None = None
-    """registration of the contact wire; unset: the contact wire is free here"""
-    system_height: Positive | None = None
-    """[m] between the wires at this support; unset: the catenary's"""
-
-    @model_validator(mode="after")
-    def _damping_needs_a_spring(self) -> Self:
-        if self.messenger_damping and self.messenger_stiffness is None:
-            raise ValueError(
-                f"messenger_damping = {self.messenger_damping:g} N s/m has no effect on a rigid support;"
-                " give messenger_stiffness too"
-            )
-        return self
-
-
-class Span(Parameters):
-    """From one support to the next, with its droppers in order."""
-
-    length: Positive
-    """[m] between the supports"""
-    droppers: tuple[Dropper, ...]
-    """in order of their positions"""
-    pre_sag: Number = 0.0
-    """[m] design sag of the contact wire at mid-span, a parabola between the outermost droppers"""
-
-    @model_validator(mode="after")
-    def _droppers_in_order(self) -> Self:
-        previous = 0.0
-        for number, dropper in enumerate(self.droppers, start=1):
-            x = dropper.position
-            if not 0 < x < self.length:
-                raise ValueError(
-                    f"dropper {number} at {x:g} m lies outside the {self.length:g} m span;"
-                    f" positions count from the span's first support, between 0 and {self.length:g} m"
-                )
-            if x <= previous:
-                raise ValueError(
-                    f"dropper {number} at {x:g} m does not come after the one before it at {previous:g} m;"
-                    " list the droppers in order, each position once"
-                )
-            previous = x
-        return self
-
-    def height_offsets(self) -> NDArray[np.float64]:
-        """[m], shape (droppers,): design height of the contact wire at each dropper above the nominal one."""
-        x = np.array([d.position for d in self.droppers])
-        if x.size == 0:
-            return x
-        first, last = x[0], x[-1]
-        xi = (x - first) / (last - first) if last > first else np.full_like(x, 0.5)
-        sag = -4 * self.pre_sag * xi * (1 - xi)
-        own = [np.nan if d.height_offset is None else d.height_offset for d in self.droppers]
-        return np.where(np.isnan(own), sag, own)
+from catenary_fe.system.parameters import (
+    GRAVITY,
+    NonEmpty,
+    NonNegative,
+    Parameters,
+    Positive,
+    Text,
+)
+from catenary_fe.system.span import Span
+from catenary_fe.system.support import SteadyArm, Support
+from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 
 class RayleighDamping(Parameters):
@@ -101,10 +34,11 @@ class RayleighDamping(Parameters):
 
 
 class Catenary(Parameters):
-    """One tension section of a two-wire catenary in the vertical plane.
+    """One tension section of a catenary: contact wire (or two), messenger wire, perhaps stitch wires.
 
-    x runs along the track from the first support, z upwards from the rail. Both wires end on the first and
-    the last support: fixed at the first, tensioned by weights (free to move along the track) at the last.
+    x runs along the track from the first support, y to the left of the track's centre, z upwards from the
+    rail. Contact and messenger wires end on the first and the last support: fixed at the first, tensioned by
+    weights (free to move along the track) at the last.
     """
 
     name: Text = "catenary"
@@ -115,6 +49,10 @@ class Catenary(Parameters):
     """the wire that the pantograph touches"""
     messenger_wire: Wire
     """the wire that carries the droppers"""
+    contact_wire_spacing: Positive | None = None
+    """[m] sideways between two equal contact wires; unset: one contact wire"""
+    stitch_wire: StitchWire | None = None
+    """at each support between the line's ends; unset: none"""
     spans: Annotated[tuple[Span, ...], NonEmpty]
     """one after the other; they may all differ"""
     supports: tuple[Support, ...]
@@ -127,6 +65,8 @@ class Catenary(Parameters):
     """of the wires"""
     evaluated_spans: tuple[int, ...] | None = None
     """numbers of the spans (from 1) over which statistics are taken; unset: the middle third"""
+    spatial: bool | None = None
+    """true: modelled in space; unset: where stagger, curves or links leave the vertical plane"""
 
     @model_validator(mode="after")
     def _counts(self) -> Self:
@@ -157,6 +97,40 @@ class Catenary(Parameters):
                     )
         return self
 
+    @model_validator(mode="after")
+    def _plane_is_a_plane(self) -> Self:
+        if self.spatial is False and self._leaves_the_plane:
+            raise ValueError(
+                "spatial = false, but stagger, curves or steady arms with a length leave the vertical plane;"
+                " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _stitch_wires_fit(self) -> Self:
+        if self.stitch_wire:
+            half = self.stitch_wire.length / 2
+            for i, span in enumerate(self.spans, start=1):
+                ends = [n for n in (i - 1, i) if self._has_stitch_wire(n)]
+                if len(ends) * half >= span.length:
+                    raise ValueError(
+                        f"span {i}: stitch wires of {2 * half:g} m meet in a span of {span.length:g} m;"
+                        " shorten stitch_wire.length"
+                    )
+        return self
+
+    @model_validator(mode="after")
+    def _twin_droppers_have_a_twin(self) -> Self:
+        if self.contact_wire_spacing is None:
+            for i, span in enumerate(self.spans, start=1):
+                for number, dropper in enumerate(span.droppers, start=1):
+                    if dropper.contact_wire is not None:
+                        raise ValueError(
+                            f"span {i}: dropper {number}: contact_wire = {dropper.contact_wire}, but there is"
+                            " one contact wire; give contact_wire_spacing for two, or leave it out"
+                        )
+        return self
+
     @classmethod
     def regular(
         cls,
@@ -168,6 +142,8 @@ class Catenary(Parameters):
         messenger_wire: Wire,
         support: Support,
         pre_sag: float = 0.0,
+        stagger: float = 0.0,
+        curve_radius: float | None = None,
         **others: object,
     ) -> Self:
         """A line of equal spans with equal supports.
@@ -176,16 +152,21 @@ class Catenary(Parameters):
         span_length : [m]
         droppers : of one span, in order
         pre_sag : [m] of the contact wire at mid-span
+        stagger : [m] of the contact wire, to the left at the first support and then to alternating sides
+        curve_radius : [m] of the track, positive to the left; unset: straight
         others : further fields of :class:`Catenary`
 
         Raises InputError where a value breaks a rule.
         """
-        span = Span(length=span_length, droppers=tuple(droppers), pre_sag=pre_sag)
+        span = Span(length=span_length, droppers=tuple(droppers), pre_sag=pre_sag, curve_radius=curve_radius)
+        supports = (support,) * (spans + 1)
+        if stagger:
+            supports = tuple(s.replace(stagger=stagger * (-1) ** i) for i, s in enumerate(supports))
         return cls(
             contact_wire=contact_wire,
             messenger_wire=messenger_wire,
             spans=(span,) * spans,
-            supports=(support,) * (spans + 1),
+            supports=supports,
             **others,
         )
 
@@ -227,6 +208,80 @@ class Catenary(Parameters):
         return self.contact_wire_height + np.array(heights)
 
     @property
+    def _leaves_the_plane(self) -> bool:
+        return any(span.curve_radius for span in self.spans) or any(
+            s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
+            for s in self.supports
+        )
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether the model is one in space; else it lies in the vertical plane."""
+        return self._leaves_the_plane if self.spatial is None else self.spatial
+
+    @property
+    def contact_wire_offsets(self) -> tuple[float, ...]:
+        """[m], of each contact wire to the left of the stagger; the right wire comes first."""
+        half = (self.contact_wire_spacing or 0.0) / 2
+        return (-half, half) if half else (0.0,)
+
+    @cached_property
+    def dropper_contact_wires(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
+        wires = len(self.contact_wire_offsets)
+        return np.array(
+            [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(self.droppers)],
+            dtype=np.int64,
+        )
+
+    def _has_stitch_wire(self, support: int) -> bool:
+        inside = 0 < support < len(self.supports) - 1
+        return bool(self.stitch_wire and inside and self.supports[support].stitch_wire)
+
+    @cached_property
+    def stitched_supports(self) -> tuple[int, ...]:
+        """Numbers of the supports, from 0, that have a stitch wire."""
+        return tuple(i for i in range(len(self.supports)) if self._has_stitch_wire(i))
+
+    @cached_property
+    def staggers(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
+        return np.array([support.stagger for support in self.supports])
+
+    @cached_property
+    def lateral_pulls(self) -> NDArray[np.float64]:
+        """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
+
+        Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
+        """
+        lengths = np.array([span.length for span in self.spans])
+        direction = np.diff(self.staggers) / lengths
+        bend = lengths * np.array([span.curvature for span in self.spans]) / 2
+        pulls = np.zeros(len(self.supports))
+        pulls[1:-1] = np.diff(direction) + bend[:-1] + bend[1:]
+        return self.contact_wire.tension * len(self.contact_wire_offsets) * pulls
+
+    def planar(self) -> Self:
+        """The same line in the vertical plane: no stagger, no curves, links as springs.
+
+        A link under the sideways pull H acts in the plane like a vertical spring of H over its length.
+        """
+        if not self.is_spatial:
+            return self
+        supports = tuple(
+            s.replace(
+                stagger=0.0,
+                messenger_stagger=0.0,
+                messenger_lateral_stiffness=None,
+                messenger_lateral_damping=0.0,
+                steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull))),
+            )
+            for s, pull in zip(self.supports, self.lateral_pulls, strict=True)
+        )
+        spans = tuple(span.replace(curve_radius=None) for span in self.spans)
+        return self.replace(spans=spans, supports=supports, spatial=False)
+
+    @property
     def spans_to_evaluate(self) -> tuple[int, ...]:
         """Numbers of the spans (from 1) that statistics are taken over."""
         if self.evaluated_spans:
@@ -237,13 +292,32 @@ class Catenary(Parameters):
         return tuple(range(first, first + count))
 
     def mirrored(self) -> Self:
-        """The same line seen from its other end."""
-        spans = tuple(
-            span.replace(
-                droppers=tuple(d.replace(position=span.length - d.position) for d in reversed(span.droppers))
-            )
-            for span in reversed(self.spans)
-        )
+        """The mirror image: x runs the other way, left stays left."""
+        wires = iter(self.dropper_contact_wires.tolist())
+        spans = []
+        for span in self.spans:
+            images = [
+                d.replace(
+                    position=span.length - d.position,
+                    contact_wire=next(wires) + 1 if self.contact_wire_spacing else None,
+                )
+                for d in span.droppers
+            ]
+            spans.append(span.replace(droppers=tuple(reversed(images))))
         n = len(self.spans)
         evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
-        return self.replace(spans=spans, supports=self.supports[::-1], evaluated_spans=evaluated)
+        return self.replace(
+            spans=tuple(reversed(spans)), supports=self.supports[::-1], evaluated_spans=evaluated
+        )
+
+
+def _arm_in_the_plane(arm: SteadyArm, pull: float) -> SteadyArm:
+    if arm.length is None:
+        return arm
+    force = pull * tan(arm.inclination or 0.0) - GRAVITY * (arm.hanging_mass - arm.tip_mass)
+    return SteadyArm(
+        stiffness=pull / arm.length,
+        mass=arm.tip_mass,
+        holds_design_height=arm.holds_height,
+        preload=0.0 if arm.holds_height else force,
+    )

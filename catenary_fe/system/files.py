@@ -9,11 +9,13 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from catenary_fe.system import library
-from catenary_fe.system.catenary import Catenary, RayleighDamping, Span, Support
+from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
 from catenary_fe.system.parameters import NonEmpty, Number, Parameters, Positive, Text, problem_lines
-from catenary_fe.system.wire import Dropper, Wire
+from catenary_fe.system.span import Span
+from catenary_fe.system.support import Support
+from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
 
@@ -37,6 +39,15 @@ class WireEntry(Wire):
 
     def wire(self) -> Wire:
         return Wire(**self.model_dump(exclude={"library"}))
+
+
+class StitchWireEntry(StitchWire, WireEntry):
+    """Stitch wires, of the library or of their own."""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=["tension", "length"]))
+
+    def wire(self) -> StitchWire:
+        return StitchWire(**self.model_dump(exclude={"library"}))
 
 
 class DropperEntry(Dropper):
@@ -100,6 +111,15 @@ class LayoutFile(Parameters):
     """the wire that the pantograph touches"""
     messenger_wire: WireEntry
     """the wire that carries the droppers"""
+    contact_wire_spacing: Positive | None = None
+    """[m] sideways between two equal contact wires; unset: one contact wire"""
+    stitch_wire: StitchWireEntry | None = None
+    """at each support between the line's ends; unset: none"""
+    stagger: Number = 0.0
+    """[m] of the contact wire at the supports, to the left at the first and then to alternating sides; a
+    support that differs may say so"""
+    curve_radius: Number | None = None
+    """[m] of the track in spans that do not say otherwise, positive to the left; unset: straight"""
     dropper: DropperDefaults = DropperDefaults()
     """values that all droppers have in common"""
     support: Support = Support()
@@ -116,28 +136,38 @@ class LayoutFile(Parameters):
     """of the wires"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
     """numbers of the spans (from 1) for the statistics; unset: the middle third"""
+    spatial: Annotated[bool, Field(strict=True)] | None = None
+    """true: modelled in space; unset: where stagger, curves or links leave the vertical plane"""
 
     def catenary(self) -> Catenary:
         """The catenary that the file describes. Raises InputError."""
         spans = tuple(self._span(entry) for entry in self.span for _ in range(entry.count))
-        supports = [self.support] * (len(spans) + 1)
-        for entry in self.supports:
-            if entry.at > len(supports):
-                raise InputError(f"supports: at = {entry.at}: the line has supports 1 to {len(supports)}")
-            changes = {name: getattr(entry, name) for name in entry.model_fields_set - {"at"}}
-            supports[entry.at - 1] = self.support.replace(**changes)
         return Catenary(
             name=self.name,
             source=self.source,
             contact_wire=self.contact_wire.wire(),
             messenger_wire=self.messenger_wire.wire(),
+            contact_wire_spacing=self.contact_wire_spacing,
+            stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
             spans=spans,
-            supports=tuple(supports),
+            supports=self._supports(len(spans) + 1),
             contact_wire_height=self.contact_wire_height,
             system_height=self.system_height,
             damping=self.damping,
             evaluated_spans=self.evaluated_spans,
+            spatial=self.spatial,
         )
+
+    def _supports(self, count: int) -> tuple[Support, ...]:
+        staggered = self.stagger and "stagger" not in self.support.model_fields_set
+        sides = [self.stagger * (-1) ** i for i in range(count)]
+        supports = [self.support.replace(stagger=y) if staggered else self.support for y in sides]
+        for entry in self.supports:
+            if entry.at > count:
+                raise InputError(f"supports: at = {entry.at}: the line has supports 1 to {count}")
+            changes = {name: getattr(entry, name) for name in entry.model_fields_set - {"at"}}
+            supports[entry.at - 1] = supports[entry.at - 1].replace(**changes)
+        return tuple(supports)
 
     def _span(self, entry: SpanEntry) -> Span:
         common = {name: getattr(self.dropper, name) for name in self.dropper.model_fields_set}
@@ -145,7 +175,13 @@ class LayoutFile(Parameters):
             Dropper(**(common | {name: getattr(d, name) for name in d.model_fields_set}))
             for d in entry.droppers
         )
-        return Span(length=entry.length, droppers=droppers, pre_sag=entry.pre_sag)
+        own_radius = "curve_radius" in entry.model_fields_set
+        return Span(
+            length=entry.length,
+            droppers=droppers,
+            pre_sag=entry.pre_sag,
+            curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+        )
 
 
 def load_catenary(path: str | Path) -> Catenary:

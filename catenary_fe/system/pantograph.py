@@ -53,6 +53,35 @@ class AerodynamicForce(Parameters):
         return self.quadratic * speed**2 + self.linear * speed
 
 
+class Panhead(Parameters):
+    """The head beyond its mass: its width, a roll of its own, a second collector strip."""
+
+    width: Positive = 1.2
+    """[m] of the part that may touch the wire, half to each side of the track's centre; the default is that
+    of the 1600 mm head (recalled)"""
+    spring_distance: Positive | None = None
+    """[m] sideways between the two springs that share the stiffness below the head, which then rolls on
+    them; unset: a head that stays level"""
+    roll_inertia: Positive | None = None
+    """[kg m²] about the track's direction; unset: that of a uniform bar of the head's width"""
+    strips: Literal[1, 2] = 1
+    """collector strips, one behind the other; two share the head's mass, spring and damper"""
+    strip_distance: Positive | None = None
+    """[m] along the track between two strips"""
+
+    @model_validator(mode="after")
+    def _options_belong_together(self) -> Self:
+        if (self.strips == 2) != (self.strip_distance is not None):
+            raise ValueError("strips = 2 and strip_distance belong together: give both or neither")
+        if self.roll_inertia and self.spring_distance is None:
+            raise ValueError("roll_inertia has no effect without spring_distance; give both or neither")
+        return self
+
+    def rolling_inertia(self, mass: float) -> float:
+        """[kg m²] of a head of this mass [kg]."""
+        return self.roll_inertia or mass * self.width**2 / 12
+
+
 class Pantograph(Parameters):
     """Lumped masses, head first, pushed up by a constant force on the lowest one.
 
@@ -76,6 +105,8 @@ class Pantograph(Parameters):
     """[N/m] between head and contact wire, no tension"""
     contact_damping: NonNegative = 0.0
     """[N s/m] beside the contact stiffness, never pulling"""
+    head: Panhead | None = None
+    """what the head is beyond the first mass; unset: a level head of the usual width with one strip"""
 
     @field_validator("mean_force", mode="before")
     @classmethod

@@ -10,6 +10,8 @@ from pydantic_core import ErrorDetails
 
 from catenary_fe.system.errors import InputError
 
+GRAVITY = 9.81  # [m/s²]
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
+from typing import Literal
 
 from catenary_fe.system.parameters import NonNegative, Number, Parameters, Positive, Text
 
@@ -53,3 +54,17 @@ class Dropper(Parameters):
     """[kg]"""
     height_offset: Number | None = None
     """[m] design height of the contact wire here above the nominal one; unset: the span's pre-sag decides"""
+    contact_wire: Literal[1, 2] | None = None
+    """which of two contact wires hangs here, the right (1) or the left (2) one; unset: in turns"""
+
+
+class StitchWire(Wire):
+    """A wire clamped on the messenger wire to both sides of a support, from which the next droppers hang.
+
+    `tension` is what it has when installed; no weights hold it.
+    """
+
+    length: Positive
+    """[m] along the track, half of it to each side of the support"""
+    clamp_mass: NonNegative = 0.0
+    """[kg] of each of the two clamps on the messenger wire"""

@@ -47,7 +47,7 @@ def test_messenger_sag_by_hand(reference, reference_shape):
     rounding = np.sqrt(wire.bending_stiffness / wire.tension)
     kinks = reference_shape.support_forces[4] + forces[4]
     sag = moment / wire.tension - rounding * kinks / (2 * wire.tension)
-    middle = reference_shape.mesh.messenger.droppers[40]
+    middle = reference_shape.mesh.upper.node[40]
     found = reference.messenger_support_heights[4] - reference_shape.messenger_wire_z[middle]
     # 0.15 %: elements of 0.5 m at the clamps round the kinks off by 0.7 mm more (0.1 mm with 0.25 m)
     assert found == pytest.approx(sag, rel=1.5e-3)
@@ -78,7 +78,7 @@ def test_pre_sag_and_own_heights_are_met(reference):
         evaluated_spans=None,
     )
     shape = cf.find_form(line)
-    heights = shape.contact_wire_z[shape.mesh.contact.droppers] - line.contact_wire_height
+    heights = shape.contact_wire_z[shape.mesh.lower.node] - line.contact_wire_height
     assert heights[4] == pytest.approx(-0.03, abs=1e-6)
     assert heights[13] == pytest.approx(-0.04, abs=1e-6)
     assert heights[22] == pytest.approx(0.0, abs=1e-6)

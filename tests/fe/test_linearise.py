@@ -5,7 +5,8 @@ import pytest
 
 from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.model import build_model
-from catenary_fe.fe.wire import COORDINATES, UP
+
+UP, COORDINATES = 1, 4  # of a node in the plane
 
 
 @pytest.fixture(scope="module")

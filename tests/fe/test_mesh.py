@@ -11,8 +11,8 @@ from catenary_fe.fe.mesh import make_mesh
 
 def test_nodes_lie_on_droppers_and_supports(reference):
     mesh = make_mesh(reference, cf.MeshSettings())
-    for wire in (mesh.contact, mesh.messenger):
-        assert wire.x[wire.droppers] == pytest.approx(reference.dropper_positions, abs=1e-12)
+    for wire, clamps in ((mesh.contact, mesh.lower), (mesh.messenger, mesh.upper)):
+        assert wire.x[clamps.node] == pytest.approx(reference.dropper_positions, abs=1e-12)
         assert wire.x[wire.supports] == pytest.approx(reference.support_positions, abs=1e-12)
 
 

@@ -9,10 +9,12 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from catenary_fe.system.catenary import Catenary, Span, SteadyArm, Support
+from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
 from catenary_fe.system.parameters import Number, Parameters, Positive, Text
+from catenary_fe.system.span import Span
+from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, Wire
 
 

@@ -1,0 +1,79 @@
+"""What acts on the wires along their length, as one object of the system: weight, masses, damping, curves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.fe.wire import WireItems
+from catenary_fe.system import GRAVITY, RayleighDamping
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """What the wires carry besides themselves.
+
+    point_masses : [kg], shape (nodes of all wires,), that move with the nodes; unset: none
+    hanging_masses : [kg], likewise, whose weight the nodes carry; unset: the same
+    damping : of the wires
+    side_pull : [N/kg], shape (elements of all wires,), force to the left on each element by its mass: what
+        a curve makes of the tension; unset: a straight track
+    """
+
+    point_masses: Floats | None = None
+    hanging_masses: Floats | None = None
+    damping: RayleighDamping | None = None
+    side_pull: Floats | None = None
+
+
+def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overlay | None = None) -> None:
+    """Add weight, point masses, Rayleigh damping and the pull of curves, as one object.
+
+    wires : all wires of the system so far, in the order they were added, before anything else with nodes
+
+    The damping matrix includes the tension's stiffness, on which a wire's waves live; the cable's own damping
+    knows only of EA and EI. The weight as one constant vector costs a third of a load on each element.
+    """
+    from scipy.sparse import csr_matrix, diags
+
+    overlay = overlay or Overlay()
+    mbs.Assemble()
+    elements = [element for wire in wires for element in wire.elements]
+    nodes = [node for wire in wires for node in wire.nodes]
+    axes, width = wires[0].line.axes, wires[0].coordinates
+    M = mass_matrix(mbs, elements)
+    directions = [np.tile(np.eye(width)[axis], len(nodes)) for axis in range(axes)]
+    up = directions[-1]
+    forces = -GRAVITY * M @ up
+    matrices: dict[str, Any] = {}
+    if overlay.point_masses is not None and overlay.point_masses.any():
+        added = diags(np.repeat(overlay.point_masses, width) * sum(directions))
+        matrices["massMatrix"] = exu.MatrixContainer(csr_matrix(added))
+        hanging = overlay.point_masses if overlay.hanging_masses is None else overlay.hanging_masses
+        forces = forces - GRAVITY * np.repeat(hanging, width) * up
+    damping = overlay.damping
+    if damping and (damping.alpha or damping.beta):
+        D = csr_matrix(damping.alpha * M + damping.beta * stiffness_matrix(mbs, elements))
+        matrices["dampingMatrix"] = exu.MatrixContainer(D)
+    if overlay.side_pull is not None and overlay.side_pull.any():
+        forces = forces + mass_matrix(mbs, elements, factors=overlay.side_pull) @ directions[1]
+    nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
+    mbs.AddObject(
+        eii.ObjectGenericODE2(
+            nodeNumbers=nodes,
+            forceVector=forces,
+            # with a function of its own the object adds its matrices to the Jacobian as they are; without
+            # one Exudyn differentiates it numerically, coordinate by coordinate
+            jacobianUserFunction=lambda *_: nothing,
+            **matrices,
+        )
+    )

@@ -1,0 +1,70 @@
+"""A span: from one support to the next, with its droppers."""
+
+from __future__ import annotations
+
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from catenary_fe.system.parameters import Number, Parameters, Positive
+from catenary_fe.system.wire import Dropper
+
+SHARPEST_CURVE = 50.0  # [m] tramways; an assumption
+
+
+class Span(Parameters):
+    """From one support to the next, with its droppers in order."""
+
+    length: Positive
+    """[m] between the supports"""
+    droppers: tuple[Dropper, ...]
+    """in order of their positions"""
+    pre_sag: Number = 0.0
+    """[m] design sag of the contact wire at mid-span, a parabola between the outermost droppers"""
+    curve_radius: Number | None = None
+    """[m] of the track, positive in a curve to the left (centre at +y); unset or 0: straight"""
+
+    @model_validator(mode="after")
+    def _curve_is_a_track(self) -> Self:
+        if self.curve_radius and abs(self.curve_radius) < SHARPEST_CURVE:
+            raise ValueError(
+                f"curve_radius = {self.curve_radius:g} m: no track with a catenary curves more sharply than"
+                f" {SHARPEST_CURVE:g} m; leave it out where the track is straight"
+            )
+        return self
+
+    @property
+    def curvature(self) -> float:
+        """[1/m] of the track, positive to the left."""
+        return 1 / self.curve_radius if self.curve_radius else 0.0
+
+    @model_validator(mode="after")
+    def _droppers_in_order(self) -> Self:
+        previous = 0.0
+        for number, dropper in enumerate(self.droppers, start=1):
+            x = dropper.position
+            if not 0 < x < self.length:
+                raise ValueError(
+                    f"dropper {number} at {x:g} m lies outside the {self.length:g} m span;"
+                    f" positions count from the span's first support, between 0 and {self.length:g} m"
+                )
+            if x <= previous:
+                raise ValueError(
+                    f"dropper {number} at {x:g} m does not come after the one before it at {previous:g} m;"
+                    " list the droppers in order, each position once"
+                )
+            previous = x
+        return self
+
+    def height_offsets(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,): design height of the contact wire at each dropper above the nominal one."""
+        x = np.array([d.position for d in self.droppers])
+        if x.size == 0:
+            return x
+        first, last = x[0], x[-1]
+        xi = (x - first) / (last - first) if last > first else np.full_like(x, 0.5)
+        sag = -4 * self.pre_sag * xi * (1 - xi)
+        own = [np.nan if d.height_offset is None else d.height_offset for d in self.droppers]
+        return np.where(np.isnan(own), sag, own)
