@@ -12,6 +12,7 @@ from catenary_fe.system import Catenary, InputError
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+MOST_ELEMENTS = 200_000  # of a wire: 200 km at 1 m, some gigabytes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +76,10 @@ class Mesh:
 
 
 def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
-    """Mesh both wires with nodes at all droppers and supports."""
+    """Mesh both wires with nodes at all droppers and supports.
+
+    Raises InputError for a line so long, or elements so short, that no machine could take them.
+    """
     return Mesh(
         contact=_wire_mesh(catenary, settings, settings.contact_wire_element),
         messenger=_wire_mesh(catenary, settings, settings.messenger_wire_element),
@@ -84,6 +88,12 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
 
 def _wire_mesh(catenary: Catenary, settings: MeshSettings, largest: float) -> WireMesh:
     supports, droppers = catenary.support_positions, catenary.dropper_positions
+    if catenary.length > MOST_ELEMENTS * largest:
+        raise InputError(
+            f"mesh: {catenary.length:g} m of wire in elements of {largest:g} m: more than"
+            f" {MOST_ELEMENTS:,} elements; take longer elements, and look for a span length that is a slip of"
+            " the pen"
+        )
     fixed = np.unique(np.concatenate([supports, droppers]))
     parts = [
         a + _graded(b - a, min(settings.at_clamps, largest), settings.growth, largest)

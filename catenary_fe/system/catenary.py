@@ -8,10 +8,12 @@ from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
-from catenary_fe.system.parameters import NonEmpty, NonNegative, Number, Parameters, Positive, Text
+from catenary_fe.system.parameters import NonEmpty, NonNegative, Number, Parameters, Positive, Text, refuse
 from catenary_fe.system.wire import Dropper, Wire
+
+CLOSEST = 0.01  # [m] between clamps: closer ones are a slip of the pen, and no mesh
 
 
 class SteadyArm(Parameters):
@@ -61,23 +63,32 @@ class Span(Parameters):
     pre_sag: Number = 0.0
     """[m] design sag of the contact wire at mid-span, a parabola between the outermost droppers"""
 
-    @model_validator(mode="after")
-    def _droppers_in_order(self) -> Self:
-        previous = 0.0
-        for number, dropper in enumerate(self.droppers, start=1):
+    @field_validator("droppers")
+    @classmethod
+    def _droppers_in_order(cls, droppers: tuple[Dropper, ...], info: ValidationInfo) -> tuple[Dropper, ...]:
+        length = info.data.get("length", np.inf)  # a faulty one is reported by itself
+        faults, previous = [], 0.0
+        for number, dropper in enumerate(droppers, start=1):
             x = dropper.position
-            if not 0 < x < self.length:
-                raise ValueError(
-                    f"dropper {number} at {x:g} m lies outside the {self.length:g} m span;"
-                    f" positions count from the span's first support, between 0 and {self.length:g} m"
+            if not 0 < x < length:
+                faults.append(
+                    f"dropper {number} at {x:g} m lies outside the {length:g} m span;"
+                    f" positions count from the span's first support, between 0 and {length:g} m"
                 )
-            if x <= previous:
-                raise ValueError(
+            elif x <= previous:
+                faults.append(
                     f"dropper {number} at {x:g} m does not come after the one before it at {previous:g} m;"
                     " list the droppers in order, each position once"
                 )
-            previous = x
-        return self
+            elif min(x - previous, length - x) < CLOSEST:
+                faults.append(
+                    f"dropper {number} at {x:.6g} m is less than {CLOSEST:g} m from the next clamp or support"
+                    "; move it, or make one dropper of two"
+                )
+            else:
+                previous = x
+        refuse(faults)
+        return droppers
 
     def height_offsets(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): design height of the contact wire at each dropper above the nominal one."""
@@ -135,27 +146,33 @@ class Catenary(Parameters):
                 f"{len(self.supports)} supports for {len(self.spans)} spans: there must be one more support"
                 " than spans"
             )
-        for number in self.evaluated_spans or ():
-            if not 1 <= number <= len(self.spans):
-                raise ValueError(
-                    f"evaluated_spans names span {number}: the line has spans 1 to {len(self.spans)}"
-                )
+        refuse([*self._absent_spans(), *self._long_droppers()])
         return self
 
-    @model_validator(mode="after")
-    def _droppers_fit(self) -> Self:
+    def _absent_spans(self) -> list[str]:
+        if self.evaluated_spans == ():
+            return ["evaluated_spans is empty; name spans, or leave it out for the middle third"]
+        count = len(self.spans)
+        return [
+            f"evaluated_spans names span {number}: the line has spans 1 to {count}"
+            for number in self.evaluated_spans or ()
+            if not 1 <= number <= count
+        ]
+
+    def _long_droppers(self) -> list[str]:
         """A messenger wire sags: no dropper can be longer than the room at the higher of its two supports."""
+        faults = []
         top = self.messenger_support_heights
         design = iter(self.design_heights)
         for i, span in enumerate(self.spans):
             for number, dropper in enumerate(span.droppers, start=1):
                 room = max(top[i], top[i + 1]) - next(design)
                 if dropper.length is not None and dropper.length >= room:
-                    raise ValueError(
+                    faults.append(
                         f"span {i + 1}: dropper {number} with a length of {dropper.length:g} m is longer than"
                         f" the system height allows, {room:g} m here; shorten it or raise system_height"
                     )
-        return self
+        return faults
 
     @classmethod
     def regular(
