@@ -72,7 +72,9 @@ def test_given_lengths(capsys, layout, tmp_path):
 
 
 def test_static(capsys, layout, tmp_path):
-    code, out, err = call(capsys, "static", layout, "--json", "--force", 150, "-o", tmp_path / "out")
+    code, out, err = call(
+        capsys, "static", layout, "--json", "--quiet", "--force", 150, "-o", tmp_path / "out"
+    )
     result = json.loads(out)
     assert (code, err, result["force_N"]) == (0, "", 150)
     values = [row["mm_per_N"] for row in result["elasticity"]]
@@ -85,8 +87,9 @@ def test_static(capsys, layout, tmp_path):
 def test_run(capsys, layout, tmp_path):
     out_dir = tmp_path / "out"
     code, out, err = call(
-        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--speed-kmh", 250, "--json", "-o", out_dir
-    )
+        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--speed-kmh", 250, "--json", "--quiet",
+        "-o", out_dir,
+    )  # fmt: skip
     summary = json.loads(out)
     assert (code, err) == (0, "")
     assert summary["speed_kmh"] == 250
