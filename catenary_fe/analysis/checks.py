@@ -22,7 +22,7 @@ RUN_IN = 2  # spans before the evaluated ones, for the start's transient to be l
 def check_speed(speed: float) -> None:
     """Raises InputError for a speed [m/s] that is not one, or looks like another unit."""
     if not np.isfinite(speed) or speed <= 0:
-        raise InputError(f"speed = {speed!r} m/s: must be above 0")
+        raise InputError(f"speed = {speed:g} m/s, {3.6 * speed:g} km/h: must be above 0")
     if speed > FASTEST:
         raise InputError(
             f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: above 600 km/h, it looks like the wrong unit;"

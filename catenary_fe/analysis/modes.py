@@ -16,8 +16,8 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
     count : how many modes, from the lowest; unset, and with no ``below``: 40
     below : [Hz] all modes up to this frequency (with ``count``: at most so many)
 
-    Raises InputError for a count or frequency that is not positive, or a dropper that is slack at rest;
-    SolverError where the eigenvalue iteration fails.
+    Raises InputError for a count or frequency that is not positive or more than the mesh holds, or a
+    dropper that is slack at rest; SolverError where the eigenvalue iteration fails.
     """
     from catenary_fe.fe.modal import linear_system, solve_eigen
 
@@ -41,6 +41,22 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
     )
     modes = Modes(shape.catenary, pairs.frequencies, contact, messenger, pairs.along, pairs.damping_ratios)
     return modes if below is None else modes.below(below)
+
+
+def mode_warnings(shape: Shape, modes: Modes) -> list[str]:
+    """What to know before trusting modes: the rule and both numbers."""
+    wires = (
+        (shape.catenary.contact_wire, shape.mesh.contact.x),
+        (shape.catenary.messenger_wire, shape.mesh.messenger.x),
+    )
+    resolved = min(wire.wave_speed / (2 * float(np.diff(x).max())) for wire, x in wires)
+    above = int((modes.frequencies > resolved).sum())
+    if not above:
+        return []
+    return [
+        f"{above} modes, up to {modes.frequencies[-1]:.0f} Hz, lie above {resolved:.0f} Hz, where waves are"
+        " shorter than two elements; refine the mesh, or leave them out"
+    ]
 
 
 def _expected(shape: Shape, below: float) -> int:

@@ -15,7 +15,7 @@ from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, InputError, SolverError
+from catenary_fe.system import AnyPantograph, InputError, Pantograph, SolverError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -59,7 +59,8 @@ def simulate(
     store_wire : [s] between stored shapes of the whole contact wire; unset: none
     progress : called with the share done, 0 to 1
 
-    Raises InputError for a speed in the wrong unit or a run that would end beyond the line, SolverError
+    Raises InputError for a speed in the wrong unit, a run that would end beyond the line or a pantograph
+    that the air pushes down, SolverError
     where a solve fails or the mean force is not reached.
     """
     if not pantographs:
@@ -72,7 +73,7 @@ def simulate(
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     for warning in warnings:
         _log.warning(warning)
-    uplifts = np.array([p.static_uplift(speed) for p in pantographs])
+    uplifts = _uplifts(pantographs, speed)
     targets = [p.target_mean_force(speed) for p in pantographs]
     for _ in range(_MEAN_FORCE_RUNS):
         begin = clock.perf_counter()
@@ -89,6 +90,20 @@ def simulate(
         f"mean contact force: after {_MEAN_FORCE_RUNS} runs the means are {np.round(means, 2).tolist()} N,"
         f" not {np.round(goals, 2).tolist()} N; give an uplift_force instead of a mean_force"
     )
+
+
+def _uplifts(pantographs: Sequence[AnyPantograph], speed: float) -> Floats:
+    """[N], shape (pantographs,): forces on the lowest masses, the air's included."""
+    uplifts = np.array([p.static_uplift(speed) for p in pantographs])
+    faults = [
+        f"{pantograph.name}: uplift and aerodynamic force add up to {uplift:.6g} N at {3.6 * speed:g} km/h:"
+        " must be above 0, or the head stays down; change uplift_force or aerodynamic_force"
+        for pantograph, uplift in zip(pantographs, uplifts, strict=True)
+        if isinstance(pantograph, Pantograph) and uplift <= 0
+    ]
+    if faults:
+        raise InputError(*faults)
+    return uplifts
 
 
 def _drive(

@@ -17,6 +17,7 @@ from catenary_fe.cli.terminal import (
     progress_bar,
     quiet_option,
     spans_option,
+    warned,
 )
 from catenary_fe.system import Catenary, load_catenary
 from catenary_fe.system.plausibility import layout_warnings
@@ -98,7 +99,7 @@ def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, qu
     from catenary_fe.equilibrium import find_form, find_heights
 
     catenary = load_catenary(layout)
-    with output_folder(output) as folder:
+    with warned(layout_warnings(catenary)), output_folder(output) as folder:
         shape = find_heights(catenary) if given_lengths else find_form(catenary)
         rows = [row.as_dict() for row in shape.dropper_schedule()]
         result: dict[str, Any] = {
@@ -154,7 +155,7 @@ def static(
     from catenary_fe.equilibrium import find_form
 
     catenary = load_catenary(layout)
-    with output_folder(output) as folder:
+    with warned(layout_warnings(catenary)), output_folder(output) as folder:
         shape = find_form(catenary)
         with progress_bar("elasticity", not quiet) as progress:
             curve = elasticity(shape, force=force, spans=spans, progress=progress)

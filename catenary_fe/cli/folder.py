@@ -52,7 +52,7 @@ def output_folder(path: str | None) -> Iterator[Folder | None]:
     if path is None:
         yield None
         return
-    target = Path(path)
+    target = _named(path)
     made = _first_missing(target)
     try:
         target.mkdir(parents=True, exist_ok=True)
@@ -76,6 +76,26 @@ def output_folder(path: str | None) -> Iterator[Folder | None]:
         _remove(made)
         raise
     aside.rmdir()
+
+
+def writable_folder(path: str) -> Path:
+    """Make a folder whose files are replaced one by one, before the work. Raises InputError if it cannot."""
+    folder = _named(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(
+            f"output folder {path}: cannot be written ({reason}); choose another folder"
+        ) from None
+    return folder
+
+
+def _named(path: str) -> Path:
+    if not path.strip():
+        raise InputError("output folder '': has no name; give one, or '.' for the folder you are in")
+    return Path(path)
 
 
 def _first_missing(path: Path) -> Path | None:

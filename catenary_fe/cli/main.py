@@ -23,6 +23,8 @@ Examples:
 
 Exit codes: 0 good, 1 a criterion or a validation missed, 2 usage, 3 bad input, 4 solver."""
 
+MOST_LINES = 20  # of one error: a slip in a span repeats in all spans like it
+
 
 @click.group(
     epilog=EPILOG, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -43,8 +45,11 @@ def main(arguments: list[str] | None = None) -> int:
         result = commands.main(arguments, prog_name="catenary-fe", standalone_mode=False)
         return result if isinstance(result, int) else 0
     except CatenaryError as error:
-        for line in str(error).splitlines():
+        lines = str(error).splitlines()
+        for line in lines[:MOST_LINES]:
             click.echo(f"error: {line}", err=True)
+        if len(lines) > MOST_LINES:
+            click.echo(f"error: and {len(lines) - MOST_LINES} more faults like these", err=True)
         return error.exit_code
     except click.ClickException as error:
         error.show()

@@ -15,6 +15,7 @@ from catenary_fe.cli.terminal import (
     print_table,
     print_warnings,
     quiet_option,
+    warned,
 )
 from catenary_fe.system import load_catenary
 from catenary_fe.system.plausibility import layout_warnings
@@ -33,16 +34,20 @@ def modes(
     layout: str, count: int | None, below: float | None, output: str | None, as_json: bool, quiet: bool
 ) -> None:
     """Eigenfrequencies and shapes of a LAYOUT about its static state, droppers taut."""
-    from catenary_fe.analysis import solve_modes
+    from catenary_fe.analysis.modes import mode_warnings, solve_modes
     from catenary_fe.equilibrium import find_form
     from catenary_fe.fe import MeshSettings
 
     catenary = load_catenary(layout)
-    with output_folder(output) as folder:
+    with warned(layout_warnings(catenary)), output_folder(output) as folder:
         # the usual mesh leaves 0.1 % in the lowest frequencies, half of it 0.02 %
-        found = solve_modes(find_form(catenary, MeshSettings().halved()), count=count, below=below)
+        shape = find_form(catenary, MeshSettings().halved())
+        found = solve_modes(shape, count=count, below=below)
         rows = found.table()
-        result: dict[str, Any] = {"modes": rows, "warnings": layout_warnings(catenary)}
+        result: dict[str, Any] = {
+            "modes": rows,
+            "warnings": [*layout_warnings(catenary), *mode_warnings(shape, found)],
+        }
         if folder:
             from catenary_fe.views import plot_mode, plot_spectrum
 

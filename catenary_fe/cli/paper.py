@@ -14,6 +14,7 @@ from pathlib import Path
 
 import click
 
+from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, progress_bar, quiet_option
 from catenary_fe.system import InputError
 from catenary_fe.views.index_page import PageEntry, index_page
@@ -45,13 +46,7 @@ def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet
     others are drawn all the same.
     """
     scripts = chosen_scripts(_scripts_folder(), figures)
-    folder = Path(output)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "index.html").touch()
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(f"output folder {output}: cannot be written ({reason}); choose another") from None
+    folder = writable_folder(output)
 
     def say(text: str) -> None:
         if not (quiet or as_json):

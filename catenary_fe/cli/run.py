@@ -17,8 +17,9 @@ from catenary_fe.cli.terminal import (
     progress_bar,
     quiet_option,
     spans_option,
+    warned,
 )
-from catenary_fe.system import InputError, Pantograph, load_catenary, load_pantograph
+from catenary_fe.system import InputError, Pantograph, layout_warnings, load_catenary, load_pantograph
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium import Shape
@@ -99,7 +100,7 @@ def run(
     pantographs = _pantographs(names, positions)
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
-    with output_folder(output) as folder:
+    with warned(layout_warnings(catenary)), output_folder(output) as folder:
         shape = find_form(catenary, mesh)
         with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress:
             result = simulate(

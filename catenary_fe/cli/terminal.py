@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import click
+
+from catenary_fe.system import CatenaryError
 
 layout_argument = click.argument("layout", type=click.Path())
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
@@ -72,10 +75,38 @@ def print_warnings(warnings: Sequence[str]) -> None:
 
 
 @contextmanager
+def warned(warnings: Sequence[str]) -> Iterator[None]:
+    """If the work fails, say the warnings before the error: they may be its cause."""
+    try:
+        yield
+    except CatenaryError:
+        print_warnings(warnings)
+        raise
+
+
+def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
+    """What tells a log that long work goes on: share done and time left, at most so often in s."""
+    begin = last = time.monotonic()
+
+    def say(share: float) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= every and share < 1:
+            last = now
+            left = f", {(now - begin) * (1 / share - 1):.0f} s left" if share > 0 else ""
+            click.echo(f"{text}: {100 * share:.0f} % after {now - begin:.0f} s{left}", err=True)
+
+    return say
+
+
+@contextmanager
 def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | None]:
-    """A progress bar with the time left on standard error, if that is a terminal."""
-    if not shown or not sys.stderr.isatty():
+    """A progress bar with the time left on standard error; where that is no terminal, a line now and then."""
+    if not shown:
         yield None
+        return
+    if not sys.stderr.isatty():
+        yield progress_lines(text)
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn

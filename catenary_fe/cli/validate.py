@@ -10,6 +10,7 @@ from types import ModuleType
 
 import click
 
+from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, print_table, progress_bar, quiet_option
 from catenary_fe.system import InputError
 
@@ -25,11 +26,12 @@ _COLUMNS = ("case", "quantity", "computed", "reference", "error", "tolerance", "
 def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quiet: bool) -> int:
     """Compare computed with reference values; exit code 1 when a case misses."""
     suite = _suite()
+    assert suite.__file__
+    report = None if cases or quick else writable_folder(str(Path(suite.__file__).parent))
     with progress_bar("validation", not quiet) as progress:
         checks = suite.run_cases(list(cases) or None, quick=quick, jobs=jobs, progress=progress)
-    if not cases and not quick:
-        assert suite.__file__
-        suite.write_report(checks, Path(suite.__file__).parent)
+    if report:
+        suite.write_report(checks, report)
     rows = [asdict(check) for check in checks]
     if as_json:
         keys = ("case", "quantity", "computed", "reference", "error", "tolerance", "source", "passed")

@@ -39,8 +39,8 @@ class Journey:
     wire_times : [s], times of ``wire_z``
     energy : [J], shape (energy_times,), kinetic and stored, or empty
     energy_times : [s]
-    driving_power : [W], shape (times,), with which the moving bases drive the contact forces over the wire's
-        inclination, or empty
+    driven_work : [J], shape (times,), done by the moving bases, which drive the contact forces over the
+        wire's inclination, or empty
     """
 
     time: Floats
@@ -55,7 +55,7 @@ class Journey:
     wire_times: Floats | None
     energy: Floats
     energy_times: Floats
-    driving_power: Floats
+    driven_work: Floats
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,8 @@ class _Recorder:
         self._wire_index = width * np.arange(mesh.first_nodes[-1]) + up
         self._every = round(trip.wire_interval / trip.time.step) if trip.wire_interval else 0
         self._wire: list[Floats] = []
-        self._power = np.zeros(n if trip.energy_interval else 0)
+        self._work = np.zeros(n if trip.energy_interval else 0)
+        self._shape_before: Floats | None = None
         self._energy_every = round(trip.energy_interval / trip.time.step) if trip.energy_interval else 0
         self._meter = EnergyMeter(model.mbs) if trip.energy_interval else None
         self._energy: list[float] = []
@@ -179,7 +180,7 @@ class _Recorder:
         if self._every and n % self._every == 0:
             self._wire.append(q[self._wire_index])
         if self._meter:
-            self._power[n] = self._driving_power(n, q)
+            self._add_work(n, q)
             if n % self._energy_every == 0:
                 self._energy.append(self._meter.energy())
 
@@ -189,13 +190,21 @@ class _Recorder:
         heights = [output(c.wire_marker, position)[c.wire.up] for c in item.contacts]
         return float(sum(heights) / len(heights) - self._model.contact_wire_height)
 
-    def _driving_power(self, n: int, q: Floats) -> float:
-        """Over the way of a step, not at a point: the wire's kinks are shorter than that."""
-        shape, *_ = self._model.wire_shapes(q)
-        half = self._trip.speed * self._trip.time.step / 2
-        x = self._trip.start + self._trip.speed * n * self._trip.time.step
-        rise = np.array([self._height(shape, xi + half) - self._height(shape, xi - half) for xi in x])
-        return float(-self._force[:, n] @ rise / self._trip.time.step)
+    def _add_work(self, n: int, q: Floats) -> None:
+        """Work of a step as the trapezoidal rule has it: half of each end's force over the other's wire.
+
+        That is what force and wire exchange when the mean of two forces works along a step's displacement.
+        """
+        after, *_ = self._model.wire_shapes(q)
+        before, self._shape_before = self._shape_before, after
+        if before is None:
+            return
+        way = self._trip.speed * self._trip.time.step
+        x = self._trip.start + way * n
+        first = np.array([self._height(after, xi) - self._height(after, xi - way) for xi in x])
+        last = np.array([self._height(before, xi) - self._height(before, xi - way) for xi in x])
+        pushed = self._force[:, n - 1] @ first + self._force[:, n] @ last
+        self._work[n] = self._work[n - 1] - pushed / 2
 
     def _height(self, shape: Floats, position: float) -> float:
         element, local = locate(self._model.contact, position)
@@ -235,5 +244,5 @@ class _Recorder:
             wire_times=time[:: self._every] if self._wire else None,
             energy=np.array(self._energy),
             energy_times=time[:: self._energy_every] if self._meter else np.array([]),
-            driving_power=self._power,
+            driven_work=self._work,
         )

@@ -12,6 +12,7 @@ from catenary_fe.system import Catenary, InputError
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+MOST_ELEMENTS = 200_000  # of a wire: 200 km at 1 m, some gigabytes
 
 _ROUNDING = 1e-6  # [m] stations closer than this are one
 _CLAMP_ROOM = 0.05  # [m] a dropper this close to a stitch wire's clamp hangs on the messenger wire
@@ -126,7 +127,10 @@ class Mesh:
 
 
 def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
-    """Mesh all wires with nodes at their droppers, supports and clamps."""
+    """Mesh all wires with nodes at their droppers, supports and clamps.
+
+    Raises InputError for a line so long, or elements so short, that no machine could take them.
+    """
     at, below = catenary.dropper_positions, catenary.dropper_contact_wires
     contact_wires = len(catenary.contact_wire_offsets)
     above = np.full(at.size, contact_wires)
@@ -160,6 +164,12 @@ def _clamps(lines: list[WireMesh], wires: Integers, at: Floats) -> Clamps:
 
 
 def _line_mesh(catenary: Catenary, clamps: Floats, settings: MeshSettings, largest: float) -> WireMesh:
+    if catenary.length > MOST_ELEMENTS * largest:
+        raise InputError(
+            f"mesh: {catenary.length:g} m of wire in elements of {largest:g} m: more than"
+            f" {MOST_ELEMENTS:,} elements; take longer elements, and look for a span length that is a slip of"
+            " the pen"
+        )
     x = _stations(np.concatenate([catenary.support_positions, clamps]), settings, largest)
     return WireMesh(x=x, supports=np.searchsorted(x, catenary.support_positions - _ROUNDING))
 

@@ -22,6 +22,7 @@ Integers = NDArray[np.int64]
 
 # above this share of all modes, and up to this size, a dense solver is quicker than Lanczos iterations
 _DENSE_SHARE, _DENSE_LARGEST = 0.15, 5000
+_LANCZOS_SHARE = 1 / 3  # of all modes: the highest mean nothing, and would take for ever
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,11 @@ def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:
     from scipy.sparse.linalg import ArpackError, eigsh
 
     dimension = system.size
+    if dimension >= _DENSE_LARGEST and count > _LANCZOS_SHARE * dimension:
+        raise InputError(
+            f"modes: {count} modes of a mesh with {dimension} coordinates: at most a third of them can be"
+            " found; ask for less"
+        )
     if count > _DENSE_SHARE * dimension and dimension < _DENSE_LARGEST:
         whole = system.stiffness.toarray(), system.mass.toarray()
         squares, vectors = eigh(*whole, subset_by_index=[0, count - 1])

@@ -144,7 +144,7 @@ def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire:
 def hold(
     mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int, offset: float = 0.0
 ) -> int:
-    """Hold a coordinate of a node ``offset`` from where it is in the line; returns the constraint's number."""
+    """Hold a coordinate ``offset`` from where the line has it; returns the number of the constraint."""
     markers = [ground, items.coordinate_marker(mbs, node, axis)]
     return int(mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset)))
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from catenary_fe.system.catenary_rules import catenary_faults
 from catenary_fe.system.parameters import (
     GRAVITY,
     NonEmpty,
@@ -18,6 +19,7 @@ from catenary_fe.system.parameters import (
     Parameters,
     Positive,
     Text,
+    refuse,
 )
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
@@ -75,60 +77,7 @@ class Catenary(Parameters):
                 f"{len(self.supports)} supports for {len(self.spans)} spans: there must be one more support"
                 " than spans"
             )
-        for number in self.evaluated_spans or ():
-            if not 1 <= number <= len(self.spans):
-                raise ValueError(
-                    f"evaluated_spans names span {number}: the line has spans 1 to {len(self.spans)}"
-                )
-        return self
-
-    @model_validator(mode="after")
-    def _droppers_fit(self) -> Self:
-        """A messenger wire sags: no dropper can be longer than the room at the higher of its two supports."""
-        top = self.messenger_support_heights
-        design = iter(self.design_heights)
-        for i, span in enumerate(self.spans):
-            for number, dropper in enumerate(span.droppers, start=1):
-                room = max(top[i], top[i + 1]) - next(design)
-                if dropper.length is not None and dropper.length >= room:
-                    raise ValueError(
-                        f"span {i + 1}: dropper {number} with a length of {dropper.length:g} m is longer than"
-                        f" the system height allows, {room:g} m here; shorten it or raise system_height"
-                    )
-        return self
-
-    @model_validator(mode="after")
-    def _plane_is_a_plane(self) -> Self:
-        if self.spatial is False and self._leaves_the_plane:
-            raise ValueError(
-                "spatial = false, but stagger, curves or steady arms with a length leave the vertical plane;"
-                " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _stitch_wires_fit(self) -> Self:
-        if self.stitch_wire:
-            half = self.stitch_wire.length / 2
-            for i, span in enumerate(self.spans, start=1):
-                ends = [n for n in (i - 1, i) if self._has_stitch_wire(n)]
-                if len(ends) * half >= span.length:
-                    raise ValueError(
-                        f"span {i}: stitch wires of {2 * half:g} m meet in a span of {span.length:g} m;"
-                        " shorten stitch_wire.length"
-                    )
-        return self
-
-    @model_validator(mode="after")
-    def _twin_droppers_have_a_twin(self) -> Self:
-        if self.contact_wire_spacing is None:
-            for i, span in enumerate(self.spans, start=1):
-                for number, dropper in enumerate(span.droppers, start=1):
-                    if dropper.contact_wire is not None:
-                        raise ValueError(
-                            f"span {i}: dropper {number}: contact_wire = {dropper.contact_wire}, but there is"
-                            " one contact wire; give contact_wire_spacing for two, or leave it out"
-                        )
+        refuse(catenary_faults(self))
         return self
 
     @classmethod
@@ -208,7 +157,8 @@ class Catenary(Parameters):
         return self.contact_wire_height + np.array(heights)
 
     @property
-    def _leaves_the_plane(self) -> bool:
+    def leaves_the_plane(self) -> bool:
+        """Whether stagger, curves or links lie outside the vertical plane."""
         return any(span.curve_radius for span in self.spans) or any(
             s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
             for s in self.supports
@@ -217,7 +167,7 @@ class Catenary(Parameters):
     @property
     def is_spatial(self) -> bool:
         """Whether the model is one in space; else it lies in the vertical plane."""
-        return self._leaves_the_plane if self.spatial is None else self.spatial
+        return self.leaves_the_plane if self.spatial is None else self.spatial
 
     @property
     def contact_wire_offsets(self) -> tuple[float, ...]:
@@ -234,14 +184,15 @@ class Catenary(Parameters):
             dtype=np.int64,
         )
 
-    def _has_stitch_wire(self, support: int) -> bool:
+    def has_stitch_wire(self, support: int) -> bool:
+        """Whether one hangs at the support of this number, from 0."""
         inside = 0 < support < len(self.supports) - 1
         return bool(self.stitch_wire and inside and self.supports[support].stitch_wire)
 
     @cached_property
     def stitched_supports(self) -> tuple[int, ...]:
         """Numbers of the supports, from 0, that have a stitch wire."""
-        return tuple(i for i in range(len(self.supports)) if self._has_stitch_wire(i))
+        return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
     @cached_property
     def staggers(self) -> NDArray[np.float64]:

@@ -141,33 +141,50 @@ class LayoutFile(Parameters):
 
     def catenary(self) -> Catenary:
         """The catenary that the file describes. Raises InputError."""
-        spans = tuple(self._span(entry) for entry in self.span for _ in range(entry.count))
-        return Catenary(
-            name=self.name,
-            source=self.source,
-            contact_wire=self.contact_wire.wire(),
-            messenger_wire=self.messenger_wire.wire(),
-            contact_wire_spacing=self.contact_wire_spacing,
-            stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
-            spans=spans,
-            supports=self._supports(len(spans) + 1),
-            contact_wire_height=self.contact_wire_height,
-            system_height=self.system_height,
-            damping=self.damping,
-            evaluated_spans=self.evaluated_spans,
-            spatial=self.spatial,
-        )
+        spans = tuple(span for entry in self.span for span in (self._span(entry),) * entry.count)
+        supports, faults = self._all_supports(len(spans) + 1)
+        try:
+            catenary = Catenary(
+                name=self.name,
+                source=self.source,
+                contact_wire=self.contact_wire.wire(),
+                messenger_wire=self.messenger_wire.wire(),
+                contact_wire_spacing=self.contact_wire_spacing,
+                stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
+                spans=spans,
+                supports=supports,
+                contact_wire_height=self.contact_wire_height,
+                system_height=self.system_height,
+                damping=self.damping,
+                evaluated_spans=self.evaluated_spans,
+                spatial=self.spatial,
+            )
+        except InputError as error:
+            faults += error.problems
+        if faults:
+            raise InputError(*faults)
+        return catenary
 
-    def _supports(self, count: int) -> tuple[Support, ...]:
+    def _all_supports(self, count: int) -> tuple[tuple[Support, ...], list[str]]:
+        """The common support with the differing ones in their places, and what is wrong with those."""
         staggered = self.stagger and "stagger" not in self.support.model_fields_set
         sides = [self.stagger * (-1) ** i for i in range(count)]
         supports = [self.support.replace(stagger=y) if staggered else self.support for y in sides]
+        faults: list[str] = []
+        named: set[int] = set()
         for entry in self.supports:
             if entry.at > count:
-                raise InputError(f"supports: at = {entry.at}: the line has supports 1 to {count}")
+                faults.append(f"supports: at = {entry.at}: the line has supports 1 to {count}")
+                continue
+            if entry.at in named:
+                faults.append(f"supports: at = {entry.at} is there twice; make one entry of them")
+            named.add(entry.at)
             changes = {name: getattr(entry, name) for name in entry.model_fields_set - {"at"}}
-            supports[entry.at - 1] = supports[entry.at - 1].replace(**changes)
-        return tuple(supports)
+            try:
+                supports[entry.at - 1] = supports[entry.at - 1].replace(**changes)
+            except InputError as error:
+                faults += [f"supports: at = {entry.at}: {line}" for line in error.problems]
+        return tuple(supports), faults
 
     def _span(self, entry: SpanEntry) -> Span:
         common = {name: getattr(self.dropper, name) for name in self.dropper.model_fields_set}
@@ -190,11 +207,28 @@ def load_catenary(path: str | Path) -> Catenary:
     Raises InputError, one line for each fault that the file has.
     """
     path = Path(path)
-    layout = _read(path, LayoutFile, "layout")
+    record = _read_toml(path, "layout")
     try:
-        return layout.catenary()
+        return LayoutFile.model_validate(record).catenary()
+    except ValidationError as error:
+        lines = [*problem_lines(error, LayoutFile), *_further_faults(record, error)]
     except InputError as error:
-        raise InputError(*(f"{path}: {line}" for line in error.problems)) from None
+        lines = list(error.problems)
+    raise InputError(*(f"{path}: {line}" for line in lines)) from None
+
+
+def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str, ...]:
+    """What would be wrong with the layout if its faulty tables were sound, to be reported together."""
+    faulty = {detail["loc"][0] for detail in error.errors(include_url=False) if detail["loc"]}
+    wire = {"mass_per_length": 1.0, "tension": 1e4, "axial_stiffness": 1e7}
+    stand_ins = {"name": "", "contact_wire": wire, "messenger_wire": wire}
+    try:
+        LayoutFile.model_validate(stand_ins | {k: v for k, v in record.items() if k not in faulty}).catenary()
+    except ValidationError:
+        pass  # the spans themselves are at fault
+    except InputError as further:
+        return further.problems
+    return ()
 
 
 def load_pantograph(name_or_path: str | Path) -> Pantograph:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Self, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
@@ -16,6 +17,20 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
 Text = Annotated[str, Field(strict=True)]
+
+
+class FaultsError(ValueError):
+    """FaultsError of one field, found together; each line says itself what it is about."""
+
+    def __init__(self, lines: Sequence[str]) -> None:
+        self.lines = tuple(lines)
+        super().__init__("\n".join(lines))
+
+
+def refuse(faults: Sequence[str]) -> None:
+    """Raises :class:`FaultsError` if there are any."""
+    if faults:
+        raise FaultsError(faults)
 
 
 def _not_empty(items: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -49,6 +64,12 @@ class Parameters(BaseModel, metaclass=_ReadableErrors):
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
+    def __eq__(self, other: object) -> bool:
+        """By fields alone: pydantic's own looks at cached arrays too, and fails on them."""
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
+
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed, checked like a new object."""
         fields = {name: getattr(self, name) for name in type(self).model_fields}
@@ -57,8 +78,18 @@ class Parameters(BaseModel, metaclass=_ReadableErrors):
 
 def problem_lines(error: ValidationError, model: type[BaseModel], where: str = "") -> list[str]:
     """Turn pydantic's report into lines of: place, value, rule, remedy."""
-    lines = [_problem_line(detail, model) for detail in error.errors(include_url=False)]
+    details = error.errors(include_url=False)
+    lines = [line for detail in details for line in _detail_lines(detail, model)]
     return [f"{where}: {line}" if where else line for line in dict.fromkeys(lines)]
+
+
+def _detail_lines(detail: ErrorDetails, model: type[BaseModel]) -> list[str]:
+    cause = detail.get("ctx", {}).get("error")
+    if not isinstance(cause, FaultsError):
+        return [_problem_line(detail, model)]
+    inside = detail["loc"][:-1] if detail["loc"] and isinstance(detail["loc"][-1], str) else detail["loc"]
+    place = _place(_user_path(inside, model))
+    return [f"{place}: {line}" if place else line for line in cause.lines]
 
 
 def _problem_line(detail: ErrorDetails, model: type[BaseModel]) -> str:
@@ -74,9 +105,19 @@ def _problem_line(detail: ErrorDetails, model: type[BaseModel]) -> str:
         return f"{place}: {text}" if place else text
     if kind in ("model_type", "dict_type", "model_attributes_type"):
         return f"{place} = {_shorten(value)}: must be a table of its own keys; {_suggest([*path, ''], model)}"
-    rule = detail["msg"].removeprefix("Input should be ").removeprefix("a ").removeprefix("valid ")
-    rule = rule.replace("greater than or equal to", "at least").replace("less than or equal to", "at most")
+    rule = detail["msg"].removeprefix("Input should be ").replace("a valid ", "a ")
+    for pydantics, ours in _WORDS.items():
+        rule = rule.replace(pydantics, ours)
     return f"{place} = {_shorten(value)}: must be {rule}" + (f"; it is {hint}" if hint else "")
+
+
+_WORDS = {
+    "greater than or equal to": "at least",
+    "less than or equal to": "at most",
+    "a string": "a text",
+    "a integer": "a whole number",
+    "a tuple": "a list",
+}
 
 
 def _user_path(location: tuple[int | str, ...], model: type[BaseModel]) -> list[int | str]:

@@ -6,12 +6,13 @@ from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
-from catenary_fe.system.parameters import Number, Parameters, Positive
+from catenary_fe.system.parameters import Number, Parameters, Positive, refuse
 from catenary_fe.system.wire import Dropper
 
 SHARPEST_CURVE = 50.0  # [m] tramways; an assumption
+CLOSEST = 0.01  # [m] between clamps: closer ones are a slip of the pen, and no mesh
 
 
 class Span(Parameters):
@@ -40,23 +41,32 @@ class Span(Parameters):
         """[1/m] of the track, positive to the left."""
         return 1 / self.curve_radius if self.curve_radius else 0.0
 
-    @model_validator(mode="after")
-    def _droppers_in_order(self) -> Self:
-        previous = 0.0
-        for number, dropper in enumerate(self.droppers, start=1):
+    @field_validator("droppers")
+    @classmethod
+    def _droppers_in_order(cls, droppers: tuple[Dropper, ...], info: ValidationInfo) -> tuple[Dropper, ...]:
+        length = info.data.get("length", np.inf)  # a faulty one is reported by itself
+        faults, previous = [], 0.0
+        for number, dropper in enumerate(droppers, start=1):
             x = dropper.position
-            if not 0 < x < self.length:
-                raise ValueError(
-                    f"dropper {number} at {x:g} m lies outside the {self.length:g} m span;"
-                    f" positions count from the span's first support, between 0 and {self.length:g} m"
+            if not 0 < x < length:
+                faults.append(
+                    f"dropper {number} at {x:g} m lies outside the {length:g} m span;"
+                    f" positions count from the span's first support, between 0 and {length:g} m"
                 )
-            if x <= previous:
-                raise ValueError(
+            elif x <= previous:
+                faults.append(
                     f"dropper {number} at {x:g} m does not come after the one before it at {previous:g} m;"
                     " list the droppers in order, each position once"
                 )
-            previous = x
-        return self
+            elif min(x - previous, length - x) < CLOSEST:
+                faults.append(
+                    f"dropper {number} at {x:.6g} m is less than {CLOSEST:g} m from the next clamp or support"
+                    "; move it, or make one dropper of two"
+                )
+            else:
+                previous = x
+        refuse(faults)
+        return droppers
 
     def height_offsets(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): design height of the contact wire at each dropper above the nominal one."""

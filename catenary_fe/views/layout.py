@@ -68,7 +68,7 @@ def plot_layout(
         width, height = ax.get_figure(root=True).get_size_inches()  # type: ignore[union-attr]
         exaggeration = (room / (0.88 * width)) / ((high - low) / (0.75 * height))
         scale = f"heights about {exaggeration:.0f} times exaggerated"
-        ax.legend(loc="upper center", ncols=3, fontsize=8, frameon=False)
+        ax.legend(loc="upper center", ncols=4, fontsize=8, frameon=False)
     return finish(
         ax, "position along the line (m)", "height above rail (m)", f"{catenary.name}: layout, {scale}"
     )
@@ -103,7 +103,10 @@ def _draw_supports(ax: Axes, catenary: Catenary, numbers: Sequence[int] | range)
         ax.plot([x, x], [bottom - 0.75, top], color=SUPPORT, linewidth=0.8, linestyle=":")
         ax.plot(x, top, marker="v", color=SUPPORT, markersize=7, label="support" if n == 0 else None)
         if catenary.supports[i].steady_arm and 0 < i < len(catenary.spans):
-            ax.plot(x, bottom, marker="o", color=SUPPORT, markersize=5, fillstyle="none")
+            label = None if "steady arm" in ax.get_legend_handles_labels()[1] else "steady arm"
+            ax.plot(
+                x, bottom, "o", color=SUPPORT, markersize=5, fillstyle="none", linestyle="none", label=label
+            )
 
 
 def _draw_dimensions(ax: Axes, catenary: Catenary, spans: Sequence[int]) -> None:

@@ -61,14 +61,14 @@ def draw(x: Floats, force: Floats, wire: Floats, head: Floats, smooth: list[Floa
         linewidth=0.9,
         label="50 kN/m, no pull",
     )
-    law.set(
-        xlabel="head above wire (mm)", ylabel="contact force (N)", title="on the distance of head and wire"
+    law.set(xlabel="head above wire (mm)", ylabel="contact force (N)")
+    law.set_title("force against the distance of head and wire: the contact's spring", loc="left", fontsize=9)
+    points = loops.scatter(
+        1e3 * (wire - NOMINAL), smooth[0], c=(x - x[0]) % 48.0, s=5, cmap="viridis", zorder=3
     )
-    points = loops.scatter(1e3 * (wire - NOMINAL), smooth[0], c=(x - x[0]) % 48.0, s=5, cmap="twilight")
     figure.colorbar(points, ax=loops, label="position in the span (m)")
-    loops.set(
-        xlabel="wire above nominal (mm)", ylabel="contact force, 0 to 20 Hz (N)", title="on the wire's height"
-    )
+    loops.set(xlabel="wire above nominal (mm)", ylabel="contact force, 0 to 20 Hz (N)")
+    loops.set_title("force against the wire's height: a loop in each of two spans", loc="left", fontsize=9)
     for ax in (forces, heights, law):
         ax.legend(fontsize=8, loc="best", ncols=3)
     for ax in (forces, heights, law, loops):

@@ -69,8 +69,10 @@ def main(folder: Path) -> Numbers:
         )
         at_one = float(theory.phase_velocity(1.0, **STRING, bending_stiffness=bending))
         numbers[f"phase velocity over c at k = 1 rad/m, {name}"] = at_one / C
-    left.set(xlabel="position (m)", ylabel="deflection (mm)", title=f"pulse after {DURATION:g} s")
-    right.set(xlabel="wavenumber (rad/m)", ylabel="phase velocity (m/s)", title="lines: √((T + S k²)/ρ)")
+    left.set(xlabel="position (m)", ylabel="deflection (mm)")
+    left.set_title(f"what became of the pulse after {DURATION:g} s", loc="left", fontsize=10)
+    right.set(xlabel="wavenumber (rad/m)", ylabel="phase velocity (m/s)")
+    right.set_title("phase velocity; lines: relation √((T + S k²)/ρ)", loc="left", fontsize=10)
     for ax in (left, right):
         ax.legend(fontsize=8)
         ax.grid(color="#dddddd", linewidth=0.6)

@@ -51,9 +51,8 @@ def main(folder: Path) -> Numbers:
             for i, style in ((0, "#c8d6e0"), (2, "#c44e1c"), (4, "#1f5a85")):
                 label = f"{counts[i]} modes up to {CUT_OFFS[i]:g} Hz"
                 top.plot(x, 1e3 * (parts[i].wire_height - 5.3), color=style, linewidth=1.0, label=label)
-    top.set(
-        xlim=(96, 288), xlabel="position (m)", ylabel="wire above nominal (mm)", title="elastic pantograph"
-    )
+    top.set(xlim=(96, 288), xlabel="position (m)", ylabel="wire above nominal (mm)")
+    top.set_title("wire over an elastic pantograph: full run and sums of modes", loc="left", fontsize=10)
     ticks = [f"{f:g}\n{n} modes" for f, n in zip(CUT_OFFS, counts, strict=True)]
     bottom.set_xticks(CUT_OFFS, ticks)
     bottom.minorticks_off()

@@ -36,6 +36,16 @@ def test_the_reference_model_lies_in_its_accepted_ranges(reference_runs, speed, 
     assert low <= values[quantity] <= high
 
 
+@pytest.mark.parametrize(("speed", "other"), [(250, 300), (300, 250)])
+def test_the_ranges_of_another_speed_would_be_left(reference_runs, speed, other):
+    """What must fail in the validation suite's twin: the quantities that tell the two speeds apart."""
+    summary = reference_runs[speed].summary()
+    values = summary["pantographs"][0] | {"max_support_uplift_mm": summary["max_support_uplift_mm"]}
+    for quantity in ("std_N", "statistical_max_N", "statistical_min_N", "max_support_uplift_mm"):
+        low, high = RANGES[other][quantity]
+        assert not low <= values[quantity] <= high, quantity
+
+
 def test_a_false_model_leaves_the_ranges(reference, pantograph):
     """Droppers that push would be a plausible slip: the independent model has σ = 58 N with them."""
     rigid = cf.Support(

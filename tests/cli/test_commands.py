@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from catenary_fe.cli import main
+from catenary_fe.cli.terminal import progress_lines
 
 
 @pytest.fixture
@@ -71,7 +72,9 @@ def test_given_lengths(capsys, layout, tmp_path):
 
 
 def test_static(capsys, layout, tmp_path):
-    code, out, err = call(capsys, "static", layout, "--json", "--force", 150, "-o", tmp_path / "out")
+    code, out, err = call(
+        capsys, "static", layout, "--json", "--quiet", "--force", 150, "-o", tmp_path / "out"
+    )
     result = json.loads(out)
     assert (code, err, result["force_N"]) == (0, "", 150)
     values = [row["mm_per_N"] for row in result["elasticity"]]
@@ -84,8 +87,9 @@ def test_static(capsys, layout, tmp_path):
 def test_run(capsys, layout, tmp_path):
     out_dir = tmp_path / "out"
     code, out, err = call(
-        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--speed-kmh", 250, "--json", "-o", out_dir
-    )
+        capsys, "run", layout, "--pantograph", "EN 50318:2002", "--speed-kmh", 250, "--json", "--quiet",
+        "-o", out_dir,
+    )  # fmt: skip
     summary = json.loads(out)
     assert (code, err) == (0, "")
     assert summary["speed_kmh"] == 250
@@ -129,6 +133,7 @@ PANTOGRAPH = ["--pantograph", "EN 50318:2002"]
             3,
             "would end beyond the line",
         ),
+        (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--element-m", "1e-6"], 3, "more than 200,000"),
         (["static", "LAYOUT", "--force", "0"], 3, "force = 0.0 N: must be above 0"),
         (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
         (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
@@ -168,6 +173,48 @@ def test_other_files_in_the_output_folder_stay(capsys, layout, tmp_path):
     assert stat.S_ISREG((tmp_path / "out" / "form.json").stat().st_mode)
 
 
+def test_an_output_folder_without_a_name(capsys, layout, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    for arguments in (("form", layout), ("paper", "1")):
+        code, out, err = call(capsys, *arguments, "-o", "")
+        assert (code, out) == (3, "")
+        assert "has no name" in err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_air_pushes_a_pantograph_down(capsys, layout, tmp_path):
+    path = tmp_path / "down.toml"
+    path.write_text(
+        'name = "wing"\nuplift_force = 60.0\naerodynamic_force = { quadratic = -0.01 }\n'
+        "stages = [{ mass = 7.0, stiffness = 50.0 }]"
+    )
+    code, out, err = call(capsys, "run", layout, "--pantograph", path, "--speed-kmh", 360)
+    assert (code, out) == (3, "")
+    assert "wing: uplift and aerodynamic force add up to -40 N at 360 km/h: must be above 0" in err
+
+
+def test_many_equal_faults_are_cut_short(capsys, layout):
+    path = Path(layout)
+    path.write_text(path.read_text().replace("system_height = 1.2", "system_height = 0.3"))
+    code, _, err = call(capsys, "form", layout)
+    lines = err.splitlines()
+    assert code == 3
+    assert len(lines) == 21
+    assert "span 1: dropper 2 at 10.5 m has no room" in lines[0]
+    assert lines[-1] == "error: and 8 more faults like these"
+
+
+def test_progress_without_a_terminal_is_a_line_now_and_then(capsys):
+    say = progress_lines("run", every=0.0)
+    for share in (0.25, 0.5, 1.0):
+        say(share)
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(" %")[0] for line in lines] == ["run: 25", "run: 50"]
+    progress_lines("run")(0.5)
+    assert capsys.readouterr().err == ""
+
+
 def test_several_faults_are_several_lines(capsys, tmp_path, reference_layout):
     path = tmp_path / "bad.toml"
     text = reference_layout.read_text()
@@ -200,8 +247,9 @@ def test_a_static_solver_failure_is_exit_code_4(capsys, layout):
         file.write(text.replace("tension = 20e3", "tension = 1"))
     code, out, err = call(capsys, "form", layout)
     assert (code, out) == (4, "")
-    assert err.startswith("error: form finding of the contact wire: no static equilibrium")
-    assert len(err.splitlines()) == 1
+    warning, error = err.splitlines()
+    assert "contact_wire.tension = 1 N is below 1000 N: looks like kN" in warning  # the cause, said first
+    assert error.startswith("error: form finding of the contact wire: no static equilibrium")
 
 
 def test_kilonewtons_are_warned_of(capsys, layout):

@@ -28,3 +28,17 @@ def test_modes_below_a_frequency(capsys, reference_layout):
     code, _, err = call(capsys, "modes", reference_layout, "--below", -1)
     assert code == 3
     assert "must be above 0" in err
+
+
+def test_modes_beyond_the_mesh(capsys, reference_layout, tmp_path):
+    """They are warned of where they can be found, and refused where that would take for ever."""
+    code, _, err = call(capsys, "modes", reference_layout, "--count", 10_000)
+    assert code == 3
+    assert "at most a third of them can be found" in err
+    small = tmp_path / "small.toml"
+    text = reference_layout.read_text().replace("count = 10", "count = 1")
+    small.write_text(text.replace("evaluated_spans = [5, 6]", ""))
+    code, out, _ = call(capsys, "modes", small, "--count", 300, "--json")
+    (warning,) = json.loads(out)["warnings"]
+    assert code == 0
+    assert "Hz, where waves are shorter than two elements" in warning

@@ -51,7 +51,9 @@ def test_all_figures_one_of_which_fails(capsys, checkout):
 
 
 def test_some_figures(capsys, checkout):
-    code, out, err = call(capsys, "paper", "1", "text_good", "-o", "pictures", "--json", "--jobs", 1)
+    code, out, err = call(
+        capsys, "paper", "1", "text_good", "-o", "pictures", "--json", "--quiet", "--jobs", 1
+    )
     assert (code, err) == (0, "")
     drawn = json.loads(out)
     assert drawn["failed"] == {}

@@ -19,8 +19,7 @@ def balance(shape, pantograph, step, radius):
     time = cf.TimeSettings(step=step, tolerance=1e-6, spectral_radius=radius)
     trip = Trip(300 / 3.6, np.array([10.0]), round(2 / step), time, energy_interval=0.01)
     journey = drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
-    power = journey.driving_power
-    driven = np.concatenate([[0], np.cumsum((power[1:] + power[:-1]) / 2 * step)])[:: round(0.01 / step)]
+    driven = journey.driven_work[:: round(0.01 / step)]
     gained = journey.energy - journey.energy[0]
     base = journey.mass_heights[0][-1]
     uplift = 120 * (base - base[0])  # counted as stored by the meter, as work by the field
@@ -28,9 +27,17 @@ def balance(shape, pantograph, step, radius):
 
 
 def test_energy_balance_of_an_undamped_run(undamped):
-    missing, work = balance(*undamped, step=5e-4, radius=1.0)
+    missing, work = balance(*undamped, step=1e-3, radius=1.0)
     assert work > 20  # J: it is not a balance of nothing
-    assert missing < 0.005 * work
+    assert missing < 0.005 * work  # found 0.37 %: droppers that go slack and contact that is lost
+    finer, _ = balance(*undamped, step=5e-4, radius=1.0)
+    assert finer < 0.35 * missing  # second order would be 0.25
+
+
+def test_the_default_integrator_takes_little_energy(undamped):
+    """Its numerical damping takes as much again as the balance leaves at the default step, 0.66 % in all."""
+    missing, work = balance(*undamped, step=1e-3, radius=cf.TimeSettings().spectral_radius)
+    assert missing < 0.01 * work
 
 
 def test_the_balance_sees_numerical_damping(undamped):

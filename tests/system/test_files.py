@@ -44,7 +44,7 @@ def test_reference_layout(reference):
     ("old", "new", "said"),
     [
         ("tension = 20e3", "tension = -20e3", "contact_wire.tension = -20000.0: must be greater than 0"),
-        ("tension = 20e3", 'tension = "20e3"', "contact_wire.tension = '20e3': must be number"),
+        ("tension = 20e3", 'tension = "20e3"', "contact_wire.tension = '20e3': must be a number"),
         ("tension = 20e3", "", "contact_wire.tension is missing; add it: [N]"),
         ("mass = 0.3", "mas = 0.3", "unknown key support.steady_arm.mas; did you mean 'mass'?"),
         ("count = 10", "count = 0", "span 1: count = 0: must be at least 1"),
@@ -58,7 +58,7 @@ def test_reference_layout(reference):
         ),
         ("evaluated_spans = [5, 6]", "evaluated_spans = [5, 11]", "evaluated_spans names span 11"),
         ("[damping]", "[[damping]]", "damping = [{'beta': 0.0001}]: must be a table"),
-        ("count = 10", "count = 10.5", "span 1: count = 10.5: must be integer"),
+        ("count = 10", "count = 10.5", "span 1: count = 10.5: must be a whole number"),
     ],
 )
 def test_a_fault_in_a_file(edited, old, new, said):
@@ -72,7 +72,43 @@ def test_several_faults_of_a_file_come_together(edited):
             ("tension = 20e3", "tension = 0"), ("beta = 1e-4", "beta = -1"), ("length = 60.0", "length = 1.0")
         )
     )
-    assert len(found) == 3
+    # the outermost droppers lie beyond the short span too
+    assert [line.split(":")[0] for line in found] == [
+        "contact_wire.tension = 0", *["span 1"] * 9, "damping.beta = -1",
+    ]  # fmt: skip
+
+
+def test_faults_of_every_kind_come_together(edited):
+    """Values, keys, droppers out of place, and numbers of spans and supports that the line does not have."""
+    found = faults(
+        edited(
+            ("tension = 20e3", "tension = -20e3"),
+            ("tension = 16e3", "tenson = 16e3"),
+            ("evaluated_spans = [5, 6]", "evaluated_spans = [5, 60]"),
+            ("[5.0,", "[{ position = 5.0, length = 1.5 },"),
+            ("[[span]]", "[[supports]]\nat = 40\n[[supports]]\nat = 3\n[[supports]]\nat = 3\n[[span]]"),
+        )
+    )
+    said = (
+        "contact_wire.tension = -20000.0: must be greater than 0",
+        "messenger_wire.tension is missing",
+        "unknown key messenger_wire.tenson; did you mean 'tension'?",
+        "supports: at = 40: the line has supports 1 to 11",
+        "supports: at = 3 is there twice",
+        "evaluated_spans names span 60: the line has spans 1 to 10",
+        *[f"span {i}: dropper 1 with a length of 1.5 m is longer than" for i in range(1, 11)],
+    )
+    assert len(found) == len(said)
+    assert all(line.startswith(start) for line, start in zip(found, said, strict=True))
+
+
+def test_droppers_are_reported_beside_other_faults_of_their_span(edited):
+    found = faults(edited(("10.5, 17.0", "70.5, -17.0"), ("count = 10", "count = 0")))
+    assert [line.split(";")[0] for line in found] == [
+        "span 1: dropper 2 at 70.5 m lies outside the 60 m span",
+        "span 1: dropper 3 at -17 m lies outside the 60 m span",
+        "span 1: count = 0: must be at least 1",
+    ]
 
 
 def test_files_that_are_not_layouts(tmp_path):

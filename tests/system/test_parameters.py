@@ -31,10 +31,10 @@ def test_objects_are_frozen():
     ("change", "said"),
     [
         ({"tension": -1.0}, "tension = -1.0: must be greater than 0; it is [N] along the wire"),
-        ({"tension": "20 kN"}, "tension = '20 kN': must be number"),
-        ({"tension": math.nan}, "tension = nan: must be finite number"),
-        ({"tension": math.inf}, "tension = inf: must be finite number"),
-        ({"tension": True}, "tension = True: must be number"),
+        ({"tension": "20 kN"}, "tension = '20 kN': must be a number"),
+        ({"tension": math.nan}, "tension = nan: must be a finite number"),
+        ({"tension": math.inf}, "tension = inf: must be a finite number"),
+        ({"tension": True}, "tension = True: must be a number"),
         ({"tensoin": 1.0}, "unknown key tensoin; did you mean 'tension'?"),
         ({"bending_stiffness": -0.1}, "bending_stiffness = -0.1: must be at least 0"),
     ],
@@ -63,6 +63,13 @@ def test_droppers_outside_the_span_or_out_of_order():
     assert line.startswith("dropper 2 at 5 m does not come after the one before it at 7 m")
 
 
+def test_droppers_too_close_to_mesh():
+    (line,) = problems(cf.Span, length=55.0, droppers=[cf.Dropper(position=x) for x in (5.0, 5.000001)])
+    assert line.startswith("dropper 2 at 5 m is less than 0.01 m from the next clamp or support")
+    (line,) = problems(cf.Span, length=55.0, droppers=[cf.Dropper(position=54.999)])
+    assert "from the next clamp or support" in line
+
+
 def test_pre_sag_is_a_parabola_between_the_outermost_droppers():
     # heights of the EN 50318:2018 AC simple layout (secondary source): 0, -24, -41, -52, -55 mm
     droppers = tuple(cf.Dropper(position=x) for x in (4.5, 10.25, 16, 21.75, 27.5, 33.25, 39, 44.75, 50.5))
@@ -85,6 +92,7 @@ def test_counts_of_spans_and_supports_must_fit(reference):
     assert "10 supports for 10 spans" in line
     (line,) = problems(reference.replace, evaluated_spans=(11,))
     assert "span 11" in line
+    assert problems(reference.replace, evaluated_spans=())[0].startswith("evaluated_spans is empty")
 
 
 def test_zero_spans_are_refused(reference):
@@ -114,6 +122,10 @@ def test_regular_spans_equal_the_reference_layout(reference):
         evaluated_spans=(5, 6),
     )
     assert regular == reference
+    assert (regular.length, regular.dropper_spans.size) == (reference.length, reference.dropper_spans.size)
+    assert regular == reference  # with arrays kept from the line above
+    assert hash(regular) == hash(reference)
+    assert regular != reference.replace(system_height=1.3)
 
 
 @pytest.mark.parametrize(
