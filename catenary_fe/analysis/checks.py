@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system import AnyPantograph, InputError
+from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
 from catenary_fe.system.plausibility import layout_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
@@ -33,6 +33,37 @@ def check_speed(speed: float) -> None:
             f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
             " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
         )
+
+
+def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float, end: float) -> None:
+    """Raises InputError where a contact wire leaves a head sideways, or a pantograph has one wire too many.
+
+    start, end : [m] along the line, what is run over
+    """
+    wires, faults = shape.contact_wires, []
+    for pantograph in pantographs:
+        if isinstance(pantograph, ElasticPantograph):
+            if len(wires) > 1:
+                faults.append(
+                    f"{pantograph.name}: an elastic pantograph has one force for one contact wire, the layout"
+                    " has two; take a pantograph of masses"
+                )
+            continue
+        half = (pantograph.head or Panhead()).width / 2
+        for wire in wires:
+            x = np.linspace(start, end, max(2, int(np.ceil(end - start)) + 1))
+            x = np.union1d(x, wire.x[(wire.x >= start) & (wire.x <= end)])
+            y = wire.lateral(x)
+            worst = int(np.abs(y).argmax())
+            if abs(y[worst]) > half:
+                faults.append(
+                    f"{pantograph.name}: the contact wire leaves the head at {x[worst]:.1f} m (span"
+                    f" {int(np.searchsorted(shape.catenary.support_positions, x[worst]))}): it lies"
+                    f" {abs(y[worst]):.3f} m from the track's centre, the head reaches {half:g} m; lower the"
+                    " stagger, shorten the span in the curve, or take a wider head"
+                )
+    if faults:
+        raise InputError(*faults)
 
 
 def run_warnings(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.checks import check_speed, run_warnings
+from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
@@ -59,9 +59,9 @@ def simulate(
     store_wire : [s] between stored shapes of the whole contact wire; unset: none
     progress : called with the share done, 0 to 1
 
-    Raises InputError for a speed in the wrong unit, a run that would end beyond the line or a pantograph
-    that the air pushes down, SolverError
-    where a solve fails or the mean force is not reached.
+    Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
+    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
+    the mean force is not reached.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
@@ -70,6 +70,7 @@ def simulate(
     if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
     plan = plan_run(shape, len(pantographs), positions)
+    check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     for warning in warnings:
         _log.warning(warning)

@@ -5,17 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import click
+import numpy as np
 
 from catenary_fe.cli.folder import output_folder
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
     output_option,
+    planar_option,
     print_json,
     print_table,
     print_warnings,
     progress_bar,
     quiet_option,
+    read_layout,
     spans_option,
     warned,
 )
@@ -48,7 +51,13 @@ def info(layout: str, output: str | None, as_json: bool) -> None:
 def layout_facts(catenary: Catenary) -> dict[str, Any]:
     """Key figures of a layout in display units."""
     wires = {}
-    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
+    for name, wire in (
+        ("contact_wire", catenary.contact_wire),
+        ("messenger_wire", catenary.messenger_wire),
+        ("stitch_wire", catenary.stitch_wire),
+    ):
+        if wire is None:
+            continue
         wires[name] = {
             "tension_kN": wire.tension / 1e3,
             "mass_per_length_kg_per_m": wire.mass_per_length,
@@ -57,7 +66,12 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         }
     lengths = [span.length for span in catenary.spans]
     clamps = sum(d.messenger_clamp_mass + d.contact_wire_clamp_mass for d in catenary.droppers)
-    line = catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
+    contact_wires = len(catenary.contact_wire_offsets)
+    line = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
+    if catenary.stitch_wire:
+        stitch = catenary.stitch_wire
+        clamps += 2 * len(catenary.stitched_supports) * stitch.clamp_mass
+        line += len(catenary.stitched_supports) * stitch.mass_per_length * stitch.length / catenary.length
     return {
         "name": catenary.name,
         "source": catenary.source,
@@ -65,6 +79,11 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "spans": len(lengths),
         "span_lengths_m": [min(lengths), max(lengths)],
         "droppers": len(catenary.droppers),
+        "model": "in space" if catenary.is_spatial else "in the vertical plane",
+        "contact_wires": len(catenary.contact_wire_offsets),
+        "stitch_wires": len(catenary.stitched_supports),
+        "largest_stagger_m": float(np.abs(catenary.staggers).max()),
+        "largest_lateral_pull_N": float(np.abs(catenary.lateral_pulls).max()),
         "system_height_m": catenary.system_height,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
@@ -91,38 +110,45 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.option(
     "--given-lengths", is_flag=True, help="Take the droppers' lengths from the layout and find the heights."
 )
+@planar_option
 @output_option
 @json_option
 @quiet_option
-def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, quiet: bool) -> None:
+def form(
+    layout: str, given_lengths: bool, planar: bool, output: str | None, as_json: bool, quiet: bool
+) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height."""
     from catenary_fe.equilibrium import find_form, find_heights
 
-    catenary = load_catenary(layout)
+    catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         shape = find_heights(catenary) if given_lengths else find_form(catenary)
         rows = [row.as_dict() for row in shape.dropper_schedule()]
         result: dict[str, Any] = {
             "droppers": rows,
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
+            "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
             "warnings": layout_warnings(catenary),
         }
         if folder:
-            from catenary_fe.views import plot_layout, plot_static_shape
+            from catenary_fe.views import plot_layout, plot_plan, plot_static_shape
 
             folder.json("form.json", result)
             folder.table("dropper_schedule.csv", rows)
             folder.picture("layout.png", plot_layout(catenary, shape))
             folder.picture("static_shape.png", plot_static_shape(shape))
+            if catenary.is_spatial:
+                folder.picture("plan.png", plot_plan(shape))
     if as_json:
         print_json(result)
     elif not quiet:
-        columns = ("span", "position m", "length m", "installed m", "force N", "height error mm")
+        columns = ("span", "position m", "hangs on", "length m", "installed m", "force N", "height error mm")
         table = [
             (
                 int(row["span"]),
                 row["position_m"],
+                row["hangs_on"],
                 f"{row['length_m']:.4f}",
                 f"{row['installed_length_m']:.4f}",
                 f"{row['force_N']:.1f}",
@@ -139,6 +165,7 @@ def form(layout: str, given_lengths: bool, output: str | None, as_json: bool, qu
 @layout_argument
 @click.option("--force", "force", type=float, default=100.0, show_default=True, help="Upward force in N.")
 @spans_option
+@planar_option
 @output_option
 @json_option
 @quiet_option
@@ -146,6 +173,7 @@ def static(
     layout: str,
     force: float,
     spans: list[int] | None,
+    planar: bool,
     output: str | None,
     as_json: bool,
     quiet: bool,
@@ -154,7 +182,7 @@ def static(
     from catenary_fe.analysis import elasticity
     from catenary_fe.equilibrium import find_form
 
-    catenary = load_catenary(layout)
+    catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         shape = find_form(catenary)
         with progress_bar("elasticity", not quiet) as progress:

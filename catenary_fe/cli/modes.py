@@ -11,13 +11,14 @@ from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
     output_option,
+    planar_option,
     print_json,
     print_table,
     print_warnings,
     quiet_option,
+    read_layout,
     warned,
 )
-from catenary_fe.system import load_catenary
 from catenary_fe.system.plausibility import layout_warnings
 
 DRAWN = 6  # shapes in an output folder
@@ -27,18 +28,25 @@ DRAWN = 6  # shapes in an output folder
 @layout_argument
 @click.option("--count", type=click.IntRange(1), help="How many modes; unset, and with no --below: 40.")
 @click.option("--below", type=float, metavar="HZ", help="All modes up to this frequency.")
+@planar_option
 @output_option
 @json_option
 @quiet_option
 def modes(
-    layout: str, count: int | None, below: float | None, output: str | None, as_json: bool, quiet: bool
+    layout: str,
+    count: int | None,
+    below: float | None,
+    planar: bool,
+    output: str | None,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Eigenfrequencies and shapes of a LAYOUT about its static state, droppers taut."""
     from catenary_fe.analysis.modes import mode_warnings, solve_modes
     from catenary_fe.equilibrium import find_form
     from catenary_fe.fe import MeshSettings
 
-    catenary = load_catenary(layout)
+    catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         # the usual mesh leaves 0.1 % in the lowest frequencies, half of it 0.02 %
         shape = find_form(catenary, MeshSettings().halved())

@@ -11,15 +11,17 @@ from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
     output_option,
+    planar_option,
     print_json,
     print_table,
     print_warnings,
     progress_bar,
     quiet_option,
+    read_layout,
     spans_option,
     warned,
 )
-from catenary_fe.system import InputError, Pantograph, layout_warnings, load_catenary, load_pantograph
+from catenary_fe.system import InputError, Pantograph, layout_warnings, load_pantograph
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium import Shape
@@ -72,6 +74,7 @@ def _is_number(text: str) -> bool:
 )
 @spans_option
 @click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
+@planar_option
 @output_option
 @json_option
 @quiet_option
@@ -85,6 +88,7 @@ def run(
     filter_kind: Any,
     spans: list[int] | None,
     store_wire_ms: float | None,
+    planar: bool,
     output: str | None,
     as_json: bool,
     quiet: bool,
@@ -94,7 +98,7 @@ def run(
     from catenary_fe.equilibrium import find_form
     from catenary_fe.fe import MeshSettings, TimeSettings
 
-    catenary = load_catenary(layout)
+    catenary = read_layout(layout, planar)
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)

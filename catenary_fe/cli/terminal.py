@@ -11,9 +11,12 @@ from typing import Any
 
 import click
 
-from catenary_fe.system import CatenaryError
+from catenary_fe.system import Catenary, CatenaryError, load_catenary
 
 layout_argument = click.argument("layout", type=click.Path())
+planar_option = click.option(
+    "--planar", is_flag=True, help="Take the layout's equivalent in the vertical plane."
+)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
 quiet_option = click.option("--quiet", is_flag=True, help="No progress, no table.")
 output_option = click.option(
@@ -33,6 +36,12 @@ def _span_numbers(context: click.Context, parameter: click.Parameter, text: str 
 spans_option = click.option(
     "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
 )
+
+
+def read_layout(path: str, planar: bool) -> Catenary:
+    """The catenary of a layout file, or its equivalent in the vertical plane. Raises InputError."""
+    catenary = load_catenary(path)
+    return catenary.planar() if planar else catenary
 
 
 def print_json(value: Any) -> None:

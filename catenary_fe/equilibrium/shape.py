@@ -28,6 +28,8 @@ class DropperRow:
     installed_length_m : under its load
     force_N : tension
     contact_wire_height_error_mm : of the contact wire at this dropper, above its design height
+    hangs_on : "messenger wire" or "stitch wire"
+    contact_wire : number of the contact wire that it holds, of two 1 is the right one
     """
 
     span: int
@@ -36,8 +38,10 @@ class DropperRow:
     installed_length_m: float
     force_N: float  # noqa: N815 the unit's own letter
     contact_wire_height_error_mm: float
+    hangs_on: str
+    contact_wire: int
 
-    def as_dict(self) -> dict[str, float]:
+    def as_dict(self) -> dict[str, float | str]:
         """The row as plain numbers by column name."""
         return asdict(self)
 
@@ -176,6 +180,10 @@ class Shape:
                 installed_length_m=float(self.installed_lengths[i]),
                 force_N=float(self.dropper_forces[i]),
                 contact_wire_height_error_mm=1e3 * float(self.height_errors[i]),
+                hangs_on="stitch wire"
+                if self.mesh.upper.wire[i] >= self.mesh.first_stitch
+                else "messenger wire",
+                contact_wire=int(self.mesh.lower.wire[i]) + 1,
             )
             for i, dropper in enumerate(self.catenary.droppers)
         ]

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity
-from catenary_fe.system import Catenary
+from catenary_fe.system import GRAVITY, Catenary
 from catenary_fe.views.style import (
     CONTACT,
     DROPPER,
     MESSENGER,
+    STITCH,
     SUPPORT,
     finish,
     headroom,
     mark_supports,
     new_axes,
 )
+
+Floats = NDArray[np.float64]
 
 
 def plot_layout(
@@ -42,18 +47,20 @@ def plot_layout(
     start, end = supports[min(spans) - 1], supports[max(spans)]
     room = end - start
     ax = new_axes(ax, (11.0, 1.8 if to_scale else 4.6))
-    lines = _hanging_lines(shape) if shape else _sketched_lines(catenary)
-    (contact_x, contact_z), (messenger_x, messenger_z) = lines
-    for x, z, colour, name in (
-        (messenger_x, messenger_z, MESSENGER, "messenger wire"),
-        (contact_x, contact_z, CONTACT, "contact wire"),
-    ):
-        inside = (x >= start - 1e-6) & (x <= end + 1e-6)
-        ax.plot(x[inside], z[inside], color=colour, linewidth=1.6, label=name)
-    positions = catenary.dropper_positions
-    for x in positions[(positions > start) & (positions < end)]:
-        heights = np.interp(x, contact_x, contact_z), np.interp(x, messenger_x, messenger_z)
-        ax.plot([x, x], heights, color=DROPPER, linewidth=0.9)
+    lines = hanging_lines(shape) if shape else _sketched_lines(catenary)
+    named: set[str] = set()
+    for line in reversed(lines):
+        inside = (line.x >= start - 1e-6) & (line.x <= end + 1e-6)
+        if inside.any():
+            label = line.name if line.name not in named else None
+            ax.plot(line.x[inside], line.z[inside], color=line.colour, linewidth=line.width, label=label)
+            named.add(line.name)
+    for i, x in enumerate(catenary.dropper_positions):
+        if start < x < end:
+            hung = lines[_hung_on(catenary, i)]
+            below = lines[catenary.dropper_contact_wires[i]]
+            heights = np.interp(x, below.x, below.z), np.interp(x, hung.x, hung.z)
+            ax.plot([x, x], heights, color=DROPPER, linewidth=0.9)
     _draw_supports(ax, catenary, range(min(spans) - 1, max(spans) + 1))
     if not to_scale:
         _draw_dimensions(ax, catenary, spans)
@@ -74,26 +81,66 @@ def plot_layout(
     )
 
 
-def _hanging_lines(shape: Shape) -> list[tuple[np.ndarray, np.ndarray]]:
+@dataclass(frozen=True)
+class Line:
+    """A wire as it is drawn: coordinates [m] of shape (points,), colour and line width, name."""
+
+    x: Floats
+    y: Floats
+    z: Floats
+    colour: str
+    width: float
+    name: str
+
+
+def hanging_lines(shape: Shape) -> list[Line]:
+    """All wires as they hang, in the order of the mesh."""
     return [
-        (shape.contact_wire_x, shape.contact_wire_z),
-        (shape.messenger_wire_x, shape.messenger_wire_z),
+        Line(wire.x, wire.y, wire.z, *style)
+        for wire, style in zip(shape.wires, _styles(shape.catenary), strict=True)
     ]
 
 
-def _sketched_lines(catenary: Catenary) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Contact wire at its design heights, messenger wire as parabolas under the weight of both wires."""
+def _styles(catenary: Catenary) -> list[tuple[str, float, str]]:
+    """Colour, line width and name of each wire, in the order of the mesh."""
+    contact = [(CONTACT, 1.6, "contact wire")] * len(catenary.contact_wire_offsets)
+    stitch = [(STITCH, 1.2, "stitch wire")] * len(catenary.stitched_supports)
+    return [*contact, (MESSENGER, 1.6, "messenger wire"), *stitch]
+
+
+def _hung_on(catenary: Catenary, dropper: int) -> int:
+    """Number of the wire that a dropper hangs on, in the order of the mesh."""
+    messenger = len(catenary.contact_wire_offsets)
+    if catenary.stitch_wire:
+        middles = catenary.support_positions[list(catenary.stitched_supports)]
+        near = np.abs(middles - catenary.dropper_positions[dropper]) < catenary.stitch_wire.length / 2
+        if near.any():
+            return messenger + 1 + int(np.flatnonzero(near)[0])
+    return messenger
+
+
+def _sketched_lines(catenary: Catenary) -> list[Line]:
+    """Contact wires at design heights, messenger wire as parabolas, stitch wires straight."""
     supports, heights = catenary.support_positions, catenary.messenger_support_heights
     x = np.concatenate([supports, catenary.dropper_positions])
     nominal = np.full(supports.size, catenary.contact_wire_height)
     z = np.concatenate([nominal, catenary.design_heights])
     order = np.argsort(x)
-    weight = 9.81 * (catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length)
+    contact_wires = len(catenary.contact_wire_offsets)
+    mass = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
     along = np.unique(np.concatenate([np.linspace(0, catenary.length, 60 * len(catenary.spans)), supports]))
     span = np.clip(np.searchsorted(supports, along, side="right") - 1, 0, len(catenary.spans) - 1)
     a, b = supports[span], supports[span + 1]
-    sag = weight * (along - a) * (b - along) / (2 * catenary.messenger_wire.tension)
-    return [(x[order], z[order]), (along, np.interp(along, supports, heights) - sag)]
+    sag = GRAVITY * mass * (along - a) * (b - along) / (2 * catenary.messenger_wire.tension)
+    messenger = along, np.interp(along, supports, heights) - sag
+    points = [(x[order], z[order])] * contact_wires + [messenger]
+    if catenary.stitch_wire:
+        for middle in supports[list(catenary.stitched_supports)]:
+            ends = middle + catenary.stitch_wire.length / 2 * np.array([-1.0, 1.0])
+            points.append((ends, np.interp(ends, *messenger)))
+    return [
+        Line(x, np.zeros_like(x), z, *style) for (x, z), style in zip(points, _styles(catenary), strict=True)
+    ]
 
 
 def _draw_supports(ax: Axes, catenary: Catenary, numbers: Sequence[int] | range) -> None:

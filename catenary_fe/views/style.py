@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 CONTACT = "#c44e1c"  # contact wire
 MESSENGER = "#1f5a85"  # messenger wire
+STITCH = "#3a7d44"  # stitch wire
 DROPPER = "#7a7a7a"
 SUPPORT = "#444444"
 PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
