@@ -164,9 +164,7 @@ def _add_rolling_mass(track: Track, stage: Stage, count: int, inertia: float, le
         mbs.AddNode(eii.NodeRigidBodyRxyz(referenceCoordinates=[0, 0, track.contact_wire_height, 0, 0, 0]))
     )
     body = mbs.AddObject(
-        eii.ObjectRigidBody(
-            nodeNumber=node, physicsMass=stage.mass / count, physicsInertia=[inertia] * 3 + [0.0] * 3
-        )
+        eii.ObjectRigidBody(nodeNumber=node, mass=stage.mass / count, inertia=[inertia] * 3 + [0.0] * 3)
     )
     for coordinate in range(6):
         marker = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))

@@ -10,7 +10,14 @@ if TYPE_CHECKING:
 
 def catenary_faults(catenary: Catenary) -> list[str]:
     """One line for each fault of a catenary whose parts are sound by themselves."""
-    rules = (_absent_spans, _long_droppers, _left_plane, _meeting_stitch_wires, _missing_twins)
+    rules = (
+        _absent_spans,
+        _long_droppers,
+        _left_plane,
+        _loose_staggers,
+        _meeting_stitch_wires,
+        _missing_twins,
+    )
     return [fault for rule in rules for fault in rule(catenary)]
 
 
@@ -48,6 +55,14 @@ def _left_plane(catenary: Catenary) -> list[str]:
             " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
         ]
     return []
+
+
+def _loose_staggers(catenary: Catenary) -> list[str]:
+    return [
+        f"support {i}: stagger = {support.stagger:g} m without a steady_arm: nothing holds the wire"
+        for i, support in list(enumerate(catenary.supports, start=1))[1:-1]
+        if support.stagger and support.steady_arm is None
+    ]
 
 
 def _meeting_stitch_wires(catenary: Catenary) -> list[str]:

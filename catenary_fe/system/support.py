@@ -117,11 +117,3 @@ class Support(Parameters):
                     f" give {kind}_stiffness too"
                 )
         return self
-
-    @model_validator(mode="after")
-    def _stagger_is_held(self) -> Self:
-        if self.stagger and self.steady_arm is None:
-            raise ValueError(
-                f"stagger = {self.stagger:g} m without a steady_arm: nothing holds the wire there; add one"
-            )
-        return self

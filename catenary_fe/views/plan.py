@@ -70,17 +70,19 @@ def _draw_arms(ax: Axes, shape: Shape, numbers: range) -> None:
         arm = catenary.supports[i].steady_arm
         if arm is None or i in (0, len(catenary.spans)):
             continue
+        sides = []
         for wire, (stations, force) in enumerate(zip(shape.mesh.wires, forces[:, i], strict=False)):
             hanging, node = shape.wires[wire], stations.supports[i]
             x, y = hanging.x[node], hanging.y[node]
             reach = arm.length * force[0] / np.linalg.norm(force) if arm.length else 0.15
             ax.plot([x, x], [y, y + reach], color=SUPPORT, linewidth=2.2, solid_capstyle="round")
             ax.plot(x, y + reach, marker="s", color=SUPPORT, markersize=4)
-            ax.annotate(
-                f"{abs(force[0]):.0f} N",
-                (x, y + reach),
-                xytext=(6, 0),
-                textcoords="offset points",
-                va="center",
-                fontsize=8,
-            )
+            sides.append((y + reach, abs(force[0])))
+        ax.annotate(
+            " + ".join(f"{force:.0f}" for _, force in sides) + " N",
+            (x, sides[0][0]),
+            xytext=(6, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+        )
