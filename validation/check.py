@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+NO_REFERENCE = "none known"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
@@ -18,6 +20,7 @@ class Check:
     error : relative to the reference unless ``unit`` or ``reason`` say otherwise
     tolerance : largest error that passes
     source : of the reference
+    passed : None where the reference is too unsure to judge by, or there is none: shown, not counted
     reason : why the tolerance is what it is, in one sentence
     twin : the case's twin, wrong on purpose, must fail this check
     """
@@ -29,7 +32,7 @@ class Check:
     error: float
     tolerance: float
     source: str
-    passed: bool
+    passed: bool | None
     unit: str = ""
     reason: str
     twin: bool = True

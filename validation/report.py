@@ -8,7 +8,7 @@ from pathlib import Path
 
 from validation.case import Case
 from validation.cases import CASES
-from validation.check import Check
+from validation.check import NO_REFERENCE, Check
 
 _INTRODUCTION = """# Validation report
 
@@ -19,7 +19,8 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
 a curve, it is the root mean square of the difference over that of the reference. Each case has a twin, wrong
-on purpose by what its last line names, which the tests run and which must fail.
+on purpose by what its last line names, which the tests run and which must fail. *Inside* and *outside* stand
+where a reference was recalled and not read: shown, not counted.
 """
 _HEADINGS = {"verification": "Verification", "validation": "Validation"}
 
@@ -38,11 +39,12 @@ def write_report(checks: Sequence[Check], path: Path | str) -> Path:
 
 def report_text(checks: Sequence[Check], pictures: set[str]) -> str:
     """The report as Markdown. pictures : names of the cases that have one"""
-    misses = [check for check in checks if not check.passed]
+    misses = [check for check in checks if check.passed is False]
+    judged = [check for check in checks if check.passed is not None]
     missed = " Missed: " + "; ".join(f"{c.case}, {c.quantity}" for c in misses) + "." if misses else ""
     parts = [
         _INTRODUCTION.format(
-            exudyn=version("exudyn"), passed=len(checks) - len(misses), count=len(checks), missed=missed
+            exudyn=version("exudyn"), passed=len(judged) - len(misses), count=len(judged), missed=missed
         )
     ]
     by_case: dict[str, list[Check]] = {}
@@ -71,7 +73,8 @@ def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
 
 
 def _row(check: Check) -> str:
-    mark = "passed" if check.passed else "**MISSED**"
+    beside = "" if check.reference == NO_REFERENCE else "**outside**" if check.error else "inside"
+    mark = {True: "passed", False: "**MISSED**", None: beside}[check.passed]
     values = " | ".join(_text(value, check.unit) for value in (check.computed, check.reference))
     return f"| {check.quantity} | {values} | {check.error:.2g} | {check.tolerance:.2g} | {mark} |"
 

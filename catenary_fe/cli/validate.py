@@ -38,8 +38,9 @@ def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quie
         print_json([{key: row[key] for key in keys} for row in rows])
     elif not quiet:
         print_table("validation", _COLUMNS, [[row[key] for key in _COLUMNS] for row in rows])
-    missed = sum(not row["passed"] for row in rows)
-    click.echo(f"{len(rows) - missed} passed, {missed} missed", err=True)
+    verdicts = [row["passed"] for row in rows]
+    passed, missed = verdicts.count(True), verdicts.count(False)
+    click.echo(f"{passed} passed, {missed} missed, {verdicts.count(None)} not judged", err=True)
     return 1 if missed else 0
 
 

@@ -15,7 +15,7 @@ QUICK = [
 def check_case(name, *, quick):
     checks = run_cases([name], quick=quick)
     assert checks
-    assert [f"{c.quantity}: {c.error:.3g} > {c.tolerance:.3g}" for c in checks if not c.passed] == []
+    assert [f"{c.quantity}: {c.error:.3g} > {c.tolerance:.3g}" for c in checks if c.passed is False] == []
     twins = [check for check in run_twins([name], quick=quick) if check.twin]
     assert twins, "the twin must be able to fail something"
     assert [check.quantity for check in twins if check.passed] == []

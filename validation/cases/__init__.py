@@ -28,6 +28,7 @@ _MODULES = (
     "en50318_2002_statics",
     "en50318_2002_300",
     "en50318_2002_250",
+    "en50318_2018_ac_simple",
 )
 CASES: dict[str, Case] = {
     case.name: case for name in _MODULES for case in [import_module(f"validation.cases.{name}").CASE]
