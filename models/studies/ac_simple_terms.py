@@ -117,8 +117,8 @@ HEADING = """# EN 50318:2018 AC simple: what each term moves
 
 275 km/h, spans 6 to 15 of 20, the uplift set for F_m = 0.00097 v² + 70 N, causal 20 Hz filter, linearised
 runs but where it says otherwise; written by `models/studies/ac_simple_terms.py`. Bold: outside
-the accepted ranges, which were recalled and not read. The last column is how much longer the droppers of a span
-come out than the published lengths, from the outer to the middle one."""
+the accepted ranges, which were recalled and not read. The last column is how much longer the droppers of a
+span come out than the published lengths, from the outer to the middle one."""
 
 CONCLUSION = """![σ of each variant](ac_simple_terms.png)"""
 

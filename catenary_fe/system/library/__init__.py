@@ -15,7 +15,7 @@ from catenary_fe.system.pantograph import Pantograph
 from catenary_fe.system.parameters import Number, Parameters, Positive, Text
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
-from catenary_fe.system.wire import Dropper, Wire
+from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 
 class Line(Parameters):
@@ -49,27 +49,30 @@ class Line(Parameters):
             distance from the support. An assumption: the published data do not place them.
         steady_arm : registration, which the published data do not give
 
-        Raises InputError for a line with stitch wires, which this version does not model.
+        Raises InputError where a value breaks a rule. The layouts that come with the sources place droppers
+        and arms with more care.
         """
-        if self.stitch_wire:
-            raise InputError(
-                f"line {self.name}: hangs on stitch wires, which are not modelled yet; choose another line or"
-                " write a layout without them"
-            )
         count = max(2, round(self.span_length / dropper_spacing))
         gap = self.span_length / count
         common = self.dropper or Dropper(position=0.0)
         droppers = tuple(common.replace(position=(i + 0.5) * gap) for i in range(count))
+        sides = [(self.stagger or 0.0) * (-1) ** i for i in range(spans + 1)]
         return Catenary(
             name=self.name,
             source=self.source,
             contact_wire=self.contact_wire,
             messenger_wire=self.messenger_wire,
+            stitch_wire=self._stitch_wire(),
             spans=(Span(length=self.span_length, droppers=droppers, pre_sag=self.pre_sag),) * spans,
-            supports=(Support(steady_arm=steady_arm),) * (spans + 1),
+            supports=tuple(Support(steady_arm=steady_arm, stagger=y) for y in sides),
             system_height=self.system_height,
             contact_wire_height=self.contact_wire_height or 5.3,
         )
+
+    def _stitch_wire(self) -> StitchWire | None:
+        if self.stitch_wire is None or self.stitch_wire_length is None:
+            return None
+        return StitchWire(**self.stitch_wire.model_dump(), length=self.stitch_wire_length)
 
 
 def wire(name: str, *, tension: float) -> Wire:
