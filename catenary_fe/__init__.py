@@ -17,7 +17,16 @@ if TYPE_CHECKING:
         graded_nodes,
     )
     from catenary_fe.fe.wire_run import run_wire
-    from catenary_fe.results import Elasticity, ForceStatistics, ModalRun, Modes, Run, load_run
+    from catenary_fe.results import (
+        Criterion,
+        Elasticity,
+        ForceStatistics,
+        ModalRun,
+        Modes,
+        Run,
+        criteria_rows,
+        load_run,
+    )
     from catenary_fe.system import (
         AerodynamicForce,
         Catenary,
@@ -49,7 +58,16 @@ _ROOMS = {
     "fe": ("MeshSettings", "TimeSettings"),
     "fe.wire_problem": ("SlidingPantograph", "WireMotion", "WireProblem", "even_nodes", "graded_nodes"),
     "fe.wire_run": ("run_wire",),
-    "results": ("Elasticity", "ForceStatistics", "ModalRun", "Modes", "Run", "load_run"),
+    "results": (
+        "Criterion",
+        "Elasticity",
+        "ForceStatistics",
+        "ModalRun",
+        "Modes",
+        "Run",
+        "criteria_rows",
+        "load_run",
+    ),
     "system": (
         "AerodynamicForce",
         "Catenary",
@@ -80,6 +98,7 @@ __all__ = [
     "AerodynamicForce",
     "Catenary",
     "CatenaryError",
+    "Criterion",
     "Dropper",
     "ElasticPantograph",
     "Elasticity",
@@ -105,6 +124,7 @@ __all__ = [
     "Wire",
     "WireMotion",
     "WireProblem",
+    "criteria_rows",
     "elasticity",
     "even_nodes",
     "find_form",

@@ -11,11 +11,11 @@ from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
+from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.plausibility import layout_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
 SLOWEST = 5 / 3.6  # [m/s]
-WAVE_SPEED_SHARE = 0.7  # of the contact wire's wave speed, EN 50119 practice (secondary source)
 RUN_IN = 2  # spans before the evaluated ones, for the start's transient to be left behind
 
 

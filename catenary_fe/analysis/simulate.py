@@ -16,11 +16,11 @@ from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.system import AnyPantograph, InputError, Pantograph, SolverError
+from catenary_fe.system.current_collection import MEAN_FORCE_TOLERANCE
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-MEAN_FORCE_TOLERANCE = 0.1  # [N]
 _MEAN_FORCE_RUNS = 5
 _log = logging.getLogger(__name__)
 

@@ -23,6 +23,7 @@ from catenary_fe.cli.terminal import (
     warned,
 )
 from catenary_fe.system import Catenary, load_catenary
+from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.plausibility import layout_warnings
 
 
@@ -87,7 +88,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "system_height_m": catenary.system_height,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
-        "largest_speed_by_wave_speed_kmh": 0.7 * 3.6 * catenary.contact_wire.wave_speed,
+        "largest_speed_by_wave_speed_kmh": 3.6 * WAVE_SPEED_SHARE * catenary.contact_wire.wave_speed,
         "mass_of_wires_kg": line * catenary.length,
         "mass_of_clamps_kg": clamps,
         "evaluated_spans": list(catenary.spans_to_evaluate),

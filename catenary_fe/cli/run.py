@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.terminal import (
     json_option,
@@ -21,16 +23,23 @@ from catenary_fe.cli.terminal import (
     spans_option,
     warned,
 )
-from catenary_fe.system import InputError, Pantograph, layout_warnings, load_pantograph
+from catenary_fe.system import (
+    InputError,
+    Pantograph,
+    PowerSystem,
+    layout_warnings,
+    load_pantograph,
+)
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium import Shape
-    from catenary_fe.results import Run
+    from catenary_fe.results import Criterion, Run
 
 EPILOG = """\b
 Examples:
   catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o out
-  catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json"""
+  catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json
+  catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC"""
 
 
 class _ManyValues(click.Command):
@@ -75,6 +84,12 @@ def _is_number(text: str) -> bool:
 @spans_option
 @click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
 @planar_option
+@click.option(
+    "--criteria",
+    "system",
+    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
+    help="Judge the run by the limits of this system; exit code 1 on a miss.",
+)
 @output_option
 @json_option
 @quiet_option
@@ -89,10 +104,11 @@ def run(
     spans: list[int] | None,
     store_wire_ms: float | None,
     planar: bool,
+    system: PowerSystem | None,
     output: str | None,
     as_json: bool,
     quiet: bool,
-) -> None:
+) -> int:
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
     from catenary_fe.analysis import simulate
     from catenary_fe.equilibrium import find_form
@@ -117,20 +133,28 @@ def run(
                 progress=progress,
             )
         summary = result.summary(filter=filter_kind)
+        rows = judged(shape, result, system, filter_kind, quiet) if system else []
+        if system:
+            summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
-            write_run(folder, shape, result, summary)
+            write_run(folder, shape, result, summary, rows)
     if as_json:
         print_json(summary)
     elif not quiet:
         _print_summary(catenary.name, summary)
+        if system:
+            print_criteria(system, rows)
         if output:
             click.echo(f"results and pictures in {output}")
     if not as_json:
         print_warnings(summary["warnings"])
+    return exit_code(rows)
 
 
-def write_run(folder: Folder, shape: Shape, result: Run, summary: dict[str, Any]) -> None:
-    """Results, pictures and summary of a run."""
+def write_run(
+    folder: Folder, shape: Shape, result: Run, summary: dict[str, Any], rows: Sequence[Criterion] = ()
+) -> None:
+    """Results, pictures and summary of a run; its criteria where it was judged."""
     from catenary_fe import views
 
     result.save(folder.path / "run.nc")
@@ -141,6 +165,10 @@ def write_run(folder: Folder, shape: Shape, result: Run, summary: dict[str, Any]
     folder.picture("contact_force.png", views.plot_contact_force(result))
     folder.picture("support_uplift.png", views.plot_support_uplift(result))
     folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
+    if rows:
+        folder.picture(
+            "criteria.png", views.plot_criteria(rows, title=_heading(shape.catenary.name, summary))
+        )
 
 
 def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[Pantograph]:
@@ -172,10 +200,13 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
     rows = [(text, *(format(p[key], form) for p in pantographs)) for text, key, form in _ROWS]
     uplift = f"{summary['max_support_uplift_mm']:.1f}"
     rows.append(("largest uplift at a support (mm)", uplift, *[""] * (len(pantographs) - 1)))
-    spans = ", ".join(map(str, summary["evaluated_spans"]))
-    heading = f"{title}, {summary['speed_kmh']:g} km/h, spans {spans}, {summary['filter']} 20 Hz filter"
-    print_table(heading, ("", *(p["name"] for p in pantographs)), rows)
+    print_table(_heading(title, summary), ("", *(p["name"] for p in pantographs)), rows)
     click.echo(
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
     )
+
+
+def _heading(title: str, summary: dict[str, Any]) -> str:
+    spans = ", ".join(map(str, summary["evaluated_spans"]))
+    return f"{title}, {summary['speed_kmh']:g} km/h, spans {spans}, {summary['filter']} 20 Hz filter"

@@ -1,5 +1,11 @@
-"""What runs return: labelled data with units, statistics, files."""
+"""What runs return: labelled data with units, statistics, criteria, files.
 
+Criteria: ``criteria_rows(run, "AC")`` gives one :class:`Criterion` for each limit; ``row.passed`` is True,
+False, or None where no limit is known; ``missed(rows)`` are those that fail, ``labels(rows)`` their names for
+a table.
+"""
+
+from catenary_fe.results.criteria import Criterion, criteria_rows, labels, missed
 from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
@@ -8,6 +14,7 @@ from catenary_fe.results.signal import band_pass, low_pass, spectrum
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
 
 __all__ = [
+    "Criterion",
     "Elasticity",
     "ForceStatistics",
     "ModalRun",
@@ -16,8 +23,11 @@ __all__ = [
     "Run",
     "WireShapes",
     "band_pass",
+    "criteria_rows",
     "force_statistics",
+    "labels",
     "load_run",
     "low_pass",
+    "missed",
     "spectrum",
 ]

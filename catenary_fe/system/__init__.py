@@ -2,6 +2,7 @@
 
 from catenary_fe.system import library
 from catenary_fe.system.catenary import Catenary, RayleighDamping
+from catenary_fe.system.current_collection import PowerSystem, target_mean_force
 from catenary_fe.system.errors import CatenaryError, InputError, SolverError
 from catenary_fe.system.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.system.pantograph import (
@@ -11,7 +12,6 @@ from catenary_fe.system.pantograph import (
     Panhead,
     Pantograph,
     Stage,
-    target_mean_force,
 )
 from catenary_fe.system.parameters import GRAVITY
 from catenary_fe.system.plausibility import layout_warnings
@@ -30,6 +30,7 @@ __all__ = [
     "InputError",
     "Panhead",
     "Pantograph",
+    "PowerSystem",
     "RayleighDamping",
     "SolverError",
     "Span",

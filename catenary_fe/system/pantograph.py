@@ -7,26 +7,8 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import field_validator, model_validator
 
+from catenary_fe.system.current_collection import MeanForceRule, target_mean_force
 from catenary_fe.system.parameters import NonEmpty, NonNegative, Number, Parameters, Positive, Text
-
-MeanForceRule = Literal["EN 50367 AC", "EN 50367 DC 3 kV", "EN 50367 DC 1.5 kV"]
-
-
-def target_mean_force(rule: MeanForceRule, speed: float) -> float:
-    """[N] largest mean contact force that EN 50367 allows.
-
-    rule : which system's formula
-    speed : [m/s] of the train
-
-    Source: the AC formula above 200 km/h from a secondary source; the others were recalled, not read. Of the
-    DC 1.5 kV formula only the branch above 200 km/h is known here: below it, the same formula is used.
-    """
-    v = speed * 3.6
-    if rule == "EN 50367 AC":
-        return 0.00097 * v**2 + 70 if v > 200 else 0.00047 * v**2 + 90
-    if rule == "EN 50367 DC 3 kV":
-        return 0.00097 * v**2 + 110
-    return 0.00228 * v**2 + 90
 
 
 class Stage(Parameters):

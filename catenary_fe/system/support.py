@@ -41,6 +41,8 @@ class SteadyArm(Parameters):
     """true: set so that the wire has its design height here; false: a spring carries `preload`"""
     preload: Number = 0.0
     """[N] upward force of a spring on the wire at its design height, where it does not hold that height"""
+    uplift_room: Positive | None = None
+    """[m] that the wire can rise here before something is in its way, for the criteria; unset: not judged"""
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:

@@ -1,5 +1,6 @@
 """Pictures. The only room that imports matplotlib; nothing is shown on a screen, axes are returned."""
 
+from catenary_fe.views.criteria import plot_criteria
 from catenary_fe.views.layout import plot_elasticity, plot_layout, plot_static_shape
 from catenary_fe.views.modes import plot_mode, plot_spectrum
 from catenary_fe.views.plan import plot_plan
@@ -8,6 +9,7 @@ from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surf
 
 __all__ = [
     "plot_contact_force",
+    "plot_criteria",
     "plot_dropper_forces",
     "plot_elasticity",
     "plot_family",

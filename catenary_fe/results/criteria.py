@@ -1,0 +1,229 @@
+"""Is current collection good? A run's key figures against the limits of its system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from operator import ge, gt, le
+from typing import Any, Literal
+
+from catenary_fe.results.run import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.results.statistics import ForceStatistics
+from catenary_fe.system.current_collection import (
+    DEVIATION_SHARE,
+    MEAN_FORCE_TOLERANCE,
+    UPLIFT_FACTOR,
+    WAVE_SPEED_SHARE,
+    Limit,
+    PowerSystem,
+    force_limit,
+    mean_force_limit,
+)
+
+Relation = Literal["at most", "at least", "above"]
+_HOLDS: dict[Relation, Callable[[float, float], bool]] = {"at most": le, "at least": ge, "above": gt}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Criterion:
+    """One key figure of a run against one limit: a row of a table, so in display units.
+
+    name : of the figure
+    pantograph : whose it is; None: the line's
+    value : in ``unit``
+    relation : how the value has to stand to the limit
+    limit : in ``unit``; None where none is known: then there is no verdict
+    unit : N, mm, km/h or %
+    source : where the limit comes from, or why there is none
+    recalled : whether the limit was recalled by an expert and not read anywhere
+    tolerance : in ``unit``, by which the value may miss the limit, because the run itself sets it no closer
+    """
+
+    name: str
+    pantograph: str | None = None
+    value: float
+    relation: Relation = "at most"
+    limit: float | None
+    unit: str
+    source: str
+    recalled: bool = False
+    tolerance: float = 0.0
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether the value keeps the limit; None where no limit is known."""
+        if self.limit is None:
+            return None
+        allowed = self.limit + (self.tolerance if self.relation == "at most" else -self.tolerance)
+        return bool(_HOLDS[self.relation](self.value, allowed))
+
+    @property
+    def limit_text(self) -> str:
+        """Relation, limit and unit as a table says them; '–' where no limit is known."""
+        if self.limit is None:
+            return "–"
+        about = f" (± {self.tolerance:g})" if self.tolerance else ""
+        return f"{self.relation} {self.limit:.{self._digits}f} {self.unit}{about}"
+
+    @property
+    def value_text(self) -> str:
+        """Value and unit as a table says them."""
+        return f"{self.value:.{self._digits}f} {self.unit}"
+
+    @property
+    def _digits(self) -> int:
+        """Decimals that a table shows: more than usual where value and limit would look the same."""
+        usual = 2 if self.unit == "%" else 1
+        value, limit = self.value, self.limit
+        if limit is None or limit == value:
+            return usual
+        return next((n for n in range(usual, 6) if f"{value:.{n}f}" != f"{limit:.{n}f}"), 6)
+
+    @property
+    def verdict(self) -> str:
+        """'passed', 'missed' or 'not judged'."""
+        return {True: "passed", False: "missed", None: "not judged"}[self.passed]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All fields and the verdict, ready for JSON."""
+        return asdict(self) | {"passed": self.passed}
+
+
+def criteria_rows(
+    run: Run,
+    system: PowerSystem,
+    *,
+    non_uniformity: float | None = None,
+    filter: FilterKind = "causal",
+) -> list[Criterion]:
+    """Judge a run: rows of each pantograph first, then those of the line.
+
+    system : "AC", "DC 3 kV" or "DC 1.5 kV"
+    non_uniformity : of the elasticity, (e_max − e_min)/(e_max + e_min), to be reported; unset: left out
+    filter : "causal" (as EN 50317 measures) or "zero-phase"
+
+    Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, no loss of contact, room for
+    twice the uplift at steady arms that say how much they have (``uplift_room``), 0.7 of the wave speed.
+    """
+    statistics = run.contact_force_statistics(filter=filter)
+    rows: list[Criterion] = []
+    for pantograph, figures in zip(run.pantographs, statistics, strict=True):
+        is_set = pantograph.target_mean_force(run.speed) is not None
+        rows += _mean_force(figures, system, run.speed, MEAN_FORCE_TOLERANCE if is_set else 0.0)
+        rows += _spread(figures, system, run.speed)
+    rows += _uplift(run)
+    rows.append(_speed(run))
+    if non_uniformity is not None:
+        rows.append(
+            Criterion(
+                name="elasticity non-uniformity",
+                value=100 * non_uniformity,
+                limit=None,
+                unit="%",
+                source="no limit known here",
+            )
+        )
+    return rows
+
+
+def missed(rows: Iterable[Criterion]) -> list[Criterion]:
+    """Those whose limit is not kept."""
+    return [row for row in rows if row.passed is False]
+
+
+def labels(rows: Sequence[Criterion]) -> list[str]:
+    """Names of the rows, with the pantograph's where there are several."""
+    several = len({row.pantograph for row in rows} - {None}) > 1
+    return [f"{row.name}, {row.pantograph}" if several and row.pantograph else row.name for row in rows]
+
+
+def _against(limit: Limit) -> dict[str, Any]:
+    return {"limit": limit.value, "unit": "N", "source": limit.source, "recalled": limit.recalled}
+
+
+def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance: float) -> list[Criterion]:
+    figure: dict[str, Any] = {
+        "name": "mean force",
+        "pantograph": s.pantograph,
+        "value": s.mean,
+        "tolerance": tolerance,
+    }
+    return [
+        Criterion(**figure, relation="at least", **_against(mean_force_limit(system, "minimum", speed))),
+        Criterion(**figure, relation="at most", **_against(mean_force_limit(system, "maximum", speed))),
+    ]
+
+
+def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Criterion]:
+    largest = _against(force_limit(system, speed))
+    return [
+        Criterion(
+            name="standard deviation",
+            pantograph=s.pantograph,
+            value=s.std,
+            limit=DEVIATION_SHARE * s.mean,
+            unit="N",
+            source=f"{DEVIATION_SHARE:g} of the mean force (secondary source)",
+        ),
+        Criterion(
+            name="statistical minimum",
+            pantograph=s.pantograph,
+            value=s.statistical_min,
+            relation="above",
+            limit=0.0,
+            unit="N",
+            source="mean force − 3 σ above 0 (secondary source)",
+        ),
+        Criterion(name="statistical maximum", pantograph=s.pantograph, value=s.statistical_max, **largest),
+        Criterion(name="actual maximum", pantograph=s.pantograph, value=s.max, **largest),
+        Criterion(
+            name="contact loss",
+            pantograph=s.pantograph,
+            value=100 * s.contact_loss,
+            limit=0.0,
+            unit="%",
+            source="force above 0 throughout (recalled)",
+            recalled=True,
+        ),
+    ]
+
+
+def _uplift(run: Run) -> list[Criterion]:
+    """The tightest support of the evaluated spans; those whose room is not known make a row of their own."""
+    numbers = sorted({s for n in run.evaluated_spans for s in (n - 1, n)})
+    uplift = {i: float(run.data["support_uplift"].values[i].max()) for i in numbers}
+    arms = {i: run.catenary.supports[i].steady_arm for i in numbers}
+    rooms = {i: arm.uplift_room for i, arm in arms.items() if arm and arm.uplift_room is not None}
+    unknown = [i for i in numbers if i not in rooms]
+    rows = []
+    if rooms:
+        tightest = max(rooms, key=lambda i: UPLIFT_FACTOR * uplift[i] - rooms[i])
+        source = f"room for {UPLIFT_FACTOR:g} times the uplift (recalled), support {tightest + 1}"
+        rows.append(_uplift_row(uplift[tightest], 1e3 * rooms[tightest], source))
+    if unknown:
+        supports = ", ".join(str(i + 1) for i in unknown)
+        source = f"no uplift_room given, support {supports}"
+        rows.append(_uplift_row(max(uplift[i] for i in unknown), None, source))
+    return rows
+
+
+def _uplift_row(uplift: float, room: float | None, source: str) -> Criterion:
+    return Criterion(
+        name="twice the uplift at steady arms",
+        value=1e3 * UPLIFT_FACTOR * uplift,
+        limit=room,
+        unit="mm",
+        source=source,
+        recalled=room is not None,
+    )
+
+
+def _speed(run: Run) -> Criterion:
+    return Criterion(
+        name="speed",
+        value=round(3.6 * run.speed, 9),
+        limit=3.6 * WAVE_SPEED_SHARE * run.catenary.contact_wire.wave_speed,
+        unit="km/h",
+        source=f"{WAVE_SPEED_SHARE:g} of the wave speed (secondary source)",
+    )
