@@ -57,5 +57,5 @@ def exit_code(rows: Sequence[Criterion]) -> int:
     misses = missed(rows)
     for row, label in zip(rows, labels(rows), strict=True):
         if row in misses:
-            click.echo(f"missed: {label}: {row.value_text}, {row.limit_text} allowed", err=True)
+            click.echo(f"missed: {label}: {row.value_text}, must be {row.limit_text}", err=True)
     return 1 if misses else 0

@@ -24,7 +24,8 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
         ax.barh(i, 100 * share, height=0.62, color=_COLOURS[row.verdict])
         text = f"{row.value_text}, {row.limit_text}" if row.limit is not None else row.value_text
         marks = [row.verdict] + ["limit recalled"] * row.recalled
-        ax.text(end + 3, i, f"{text}: {', '.join(marks)}", va="center", fontsize=8)
+        colour = _COLOURS["missed"] if row.passed is False else "#222222"
+        ax.text(end + 3, i, f"{text}: {', '.join(marks)}", va="center", fontsize=8, color=colour)
     ax.axvline(100, color="#333333", linewidth=1.0, linestyle="--")
     ax.set_yticks(range(len(rows)), labels(rows), fontsize=8)
     ax.invert_yaxis()

@@ -93,6 +93,7 @@ def test_run(capsys, layout, tmp_path):
     summary = json.loads(out)
     assert (code, err) == (0, "")
     assert summary["speed_kmh"] == 250
+    assert "criteria" not in summary
     assert summary["pantographs"][0]["name"] == "EN 50318:2002"
     assert {p.name for p in out_dir.iterdir()} == {
         "run.nc", "summary.json", "dropper_schedule.csv", "layout.png", "static_shape.png",
@@ -114,6 +115,38 @@ def test_run_prints_a_table(capsys, layout):
 
 
 PANTOGRAPH = ["--pantograph", "EN 50318:2002"]
+SLOW = [*PANTOGRAPH, "--speed-kmh", 200, "--time-step-ms", 2]
+
+
+def test_criteria_that_are_kept(capsys, layout, tmp_path):
+    """At 200 km/h 120 N suit DC 3 kV (98 to 149 N), not AC (79 to 109 N)."""
+    out_dir = tmp_path / "out"
+    code, out, err = call(
+        capsys, "run", layout, *SLOW, "--criteria", "dc 3 kv", "--json", "--quiet", "-o", out_dir
+    )
+    summary = json.loads(out)
+    assert (code, err) == (0, "")
+    assert {row["passed"] for row in summary["criteria"]} == {True, None}
+    assert json.loads((out_dir / "summary.json").read_text()) == summary
+    assert (out_dir / "criteria.png").stat().st_size > 10_000
+    static = json.loads(call(capsys, "static", layout, "--json", "--quiet")[1])
+    assert summary["criteria"][-1]["value"] == pytest.approx(100 * static["non_uniformity"])
+
+
+def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
+    text = Path(layout).read_text().replace("stiffness = 300.0", "stiffness = 300.0\nuplift_room = 0.3")
+    Path(layout).write_text(text)
+    out_dir = tmp_path / "out"
+    code, out, err = call(capsys, "run", layout, *SLOW, "--criteria", "AC", "-o", out_dir)
+    assert code == 1
+    assert "missed: mean force: 11" in err
+    assert "must be at most 108.8 N" in err
+    text = " ".join(out.split())
+    for said in ("criteria, AC", "missed", "passed", "not judged", "(recalled)", "at most 300.0 mm"):
+        assert said in text
+    written = json.loads((out_dir / "summary.json").read_text())
+    assert [r["name"] for r in written["criteria"] if r["passed"] is False] == ["mean force"]
+    assert (out_dir / "run.nc").exists()
 
 
 @pytest.mark.parametrize(
@@ -125,6 +158,11 @@ PANTOGRAPH = ["--pantograph", "EN 50318:2002"]
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "-10"], 3, "must be above 0"),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "nan"], 3, "must be above 0"),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "fast"], 2, "not a valid float"),
+        (
+            ["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--criteria", "AD"],
+            2,
+            "'--criteria': 'AD' is not one of",
+        ),
         (["run", "LAYOUT", *PANTOGRAPH], 2, "Missing option '--speed-kmh'"),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--time-step-ms", "0"], 3, "time step = 0.0 s"),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--element-m", "-1"], 3, "mesh: contact_wire"),

@@ -149,6 +149,9 @@ def test_mean_force_formulas():
     # EN 50367 (secondary source): 0.00097 v² + 70 N above 200 km/h
     assert cf.target_mean_force("EN 50367 AC", 300 / 3.6) == pytest.approx(157.3)
     assert cf.target_mean_force("EN 50367 AC", 200 / 3.6) == pytest.approx(0.00047 * 200**2 + 90)
+    assert cf.target_mean_force("EN 50367 DC 3 kV", 50.0) == pytest.approx(0.00097 * 180**2 + 110)
+    # of DC 1.5 kV only the formula above 200 km/h is known
+    assert cf.target_mean_force("EN 50367 DC 1.5 kV", 50.0) == pytest.approx(0.00228 * 180**2 + 90)
 
 
 def test_aerodynamic_force_adds_to_the_uplift(pantograph):

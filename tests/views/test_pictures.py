@@ -36,6 +36,19 @@ def test_every_picture_can_be_saved(drawings, tmp_path):
         assert path.stat().st_size > 8_000
 
 
+def test_a_bar_beyond_100_percent_misses_its_criterion(short_run):
+    rows = cf.criteria_rows(short_run, "AC", non_uniformity=0.4)
+    ax = views.plot_criteria(rows, title="run")
+    assert ax.get_xlabel().endswith("(%)")
+    assert len(ax.patches) == len(rows)
+    for row, bar, text in zip(rows, ax.patches, ax.texts, strict=True):
+        assert row.value_text in text.get_text()
+        assert ("recalled" in text.get_text()) == row.recalled
+        if bar.get_width():
+            assert row.passed == (bar.get_width() <= 100)
+    assert sum(bar.get_width() > 0 for bar in ax.patches) == 6
+
+
 def test_a_given_axes_is_drawn_on(short_run):
     ax = Figure().subplots()
     assert short_run.plot_contact_force(ax=ax) is ax

@@ -1,0 +1,219 @@
+"""Criteria: each limit from both sides, and what has no verdict."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.results import labels, missed
+from catenary_fe.results.criteria import criteria_rows
+
+CALM = 115.0  # [N] a force that keeps all limits of AC at 250 km/h
+
+
+def altered(run, force=None, *, kmh=250.0, uplift=None, catenary=None, pantographs=None):
+    """The run with another contact force [N], speed, support uplift [m], catenary or pantographs."""
+    data = run.data.copy()
+    if force is not None:
+        data["contact_force"] = data["contact_force"].copy(data=np.broadcast_to(force, (1, run.time.size)))
+    if uplift is not None:
+        rows = np.broadcast_to(np.asarray(uplift)[:, None], data["support_uplift"].shape)
+        data["support_uplift"] = data["support_uplift"].copy(data=rows)
+    data.attrs["speed"] = kmh / 3.6
+    if catenary is not None:
+        data.attrs["catenary"] = catenary.model_dump_json()
+    if pantographs is not None:
+        data.attrs["pantographs"] = json.dumps([p.model_dump(mode="json") for p in pantographs])
+    return cf.Run(data)
+
+
+def verdicts(run, name, system="AC", **others):
+    return [row.passed for row in criteria_rows(run, system, **others) if row.name == name]
+
+
+def swinging(run, mean, deviation):
+    """[N] a force with that mean and standard deviation over the evaluated spans, as filtered."""
+    wave = np.sin(2 * np.pi * 3.0 * run.time)
+    figures = altered(run, 500 + wave).contact_force_statistics()[0]
+    return mean + deviation * (wave - (figures.mean - 500)) / figures.std
+
+
+def test_a_calm_force_keeps_all_limits(short_run):
+    rows = criteria_rows(altered(short_run, CALM), "AC")
+    assert missed(rows) == []
+    assert [row.name for row in rows if row.passed is None] == ["twice the uplift at steady arms"]
+    assert len(rows) == 9
+
+
+@pytest.mark.parametrize(
+    ("system", "kmh", "smallest", "largest"),
+    [
+        ("AC", 200, 0.00047 * 200**2 + 60, 0.00047 * 200**2 + 90),
+        ("AC", 200.01, 0.00047 * 200.01**2 + 60, 0.00097 * 200.01**2 + 70),
+        ("AC", 300, 102.3, 157.3),
+        ("DC 3 kV", 160, 0.00096 * 160**2 + 60, 0.00097 * 160**2 + 110),
+        ("DC 1.5 kV", 220, 0.00112 * 220**2 + 70, 0.00228 * 220**2 + 90),
+    ],
+)
+def test_mean_force_lies_between_its_limits(short_run, system, kmh, smallest, largest):
+    for force, expected in (
+        (smallest - 0.01, [False, True]),
+        (smallest + 0.01, [True, True]),
+        (largest - 0.01, [True, True]),
+        (largest + 0.01, [True, False]),
+    ):
+        assert verdicts(altered(short_run, force, kmh=kmh), "mean force", system) == expected
+
+
+def test_a_speed_without_a_known_formula_is_not_judged(short_run):
+    run = altered(short_run, CALM, kmh=200)
+    assert verdicts(run, "mean force", "DC 1.5 kV") == [None, None]
+    row = criteria_rows(run, "DC 1.5 kV")[0]
+    assert (row.limit, row.limit_text, row.verdict) == (None, "–", "not judged")
+    assert "up to 200 km/h: not known here" in row.source
+
+
+def test_a_run_set_for_the_largest_mean_force_keeps_it(short_run, pantograph):
+    limit = cf.target_mean_force("EN 50367 AC", 250 / 3.6)
+    is_set = [pantograph.replace(uplift_force=None, mean_force="EN 50367 AC")]
+    for excess, expected in ((0.09, True), (0.11, False)):
+        assert verdicts(altered(short_run, limit + excess, pantographs=is_set), "mean force")[1] is expected
+    assert verdicts(altered(short_run, limit + 0.09), "mean force")[1] is False  # uplift given: no tolerance
+    row = criteria_rows(altered(short_run, limit + 0.04, pantographs=is_set), "AC")[1]
+    assert (row.value_text, row.limit_text) == ("130.7 N", "at most 130.6 N (± 0.1)")
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.2999, True), (0.3001, False)])
+def test_standard_deviation(short_run, share, expected):
+    force = swinging(short_run, CALM, share * CALM)
+    assert verdicts(altered(short_run, force), "standard deviation") == [expected]
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.3332, True), (0.3335, False)])
+def test_statistical_minimum(short_run, share, expected):
+    force = swinging(short_run, CALM, share * CALM)
+    assert verdicts(altered(short_run, force), "statistical minimum") == [expected]
+
+
+@pytest.mark.parametrize(("kmh", "largest"), [(200, 300), (200.01, 350), (320, 350)])
+def test_largest_force_of_ac(short_run, kmh, largest):
+    for force, expected in ((largest - 0.01, True), (largest + 0.01, False)):
+        run = altered(short_run, force, kmh=kmh)
+        assert verdicts(run, "actual maximum") == [expected]
+        assert verdicts(run, "statistical maximum") == [expected]
+        assert verdicts(run, "actual maximum", "DC 3 kV") == [None]
+        assert verdicts(run, "statistical maximum", "DC 1.5 kV") == [None]
+
+
+def test_actual_and_statistical_maximum_are_two_figures(short_run):
+    """Mean 150 N, σ 72 N: the sine's peak stays below 350 N, three deviations do not."""
+    run = altered(short_run, swinging(short_run, 150.0, 72.0))
+    assert verdicts(run, "actual maximum") == [True]
+    assert verdicts(run, "statistical maximum") == [False]
+
+
+def test_one_instant_without_contact_is_a_loss(short_run):
+    force = np.full(short_run.time.size, CALM)
+    outside, inside = force.copy(), force.copy()
+    window = np.flatnonzero(short_run.window(0))
+    outside[window[-1] + 5] = 0.0
+    inside[window[100]] = 0.0
+    assert verdicts(altered(short_run, outside), "contact loss") == [True]
+    assert verdicts(altered(short_run, inside), "contact loss") == [False]
+
+
+def with_rooms(catenary, rooms):
+    supports = tuple(
+        s.replace(steady_arm=s.steady_arm.replace(uplift_room=room))
+        for s, room in zip(catenary.supports, rooms, strict=True)
+    )
+    return catenary.replace(supports=supports)
+
+
+def test_room_for_twice_the_uplift(short_run, short):
+    """Span 3 is evaluated: supports 3 and 4 count, 60 mm and 50 mm of uplift."""
+    lift = [0.0, 0.9, 0.060, 0.050, 0.0]
+    name = "twice the uplift at steady arms"
+    for room, expected in ((0.1201, True), (0.1199, False)):
+        run = altered(short_run, CALM, uplift=lift, catenary=with_rooms(short, [room] * 5))
+        assert verdicts(run, name) == [expected]
+    tight_at_4 = altered(short_run, CALM, uplift=lift, catenary=with_rooms(short, [0.2, 0.2, 0.2, 0.09, 0.2]))
+    row = next(r for r in criteria_rows(tight_at_4, "AC") if r.name == name)
+    assert (row.passed, row.limit_text) == (False, "at most 90.0 mm")
+    assert row.value == pytest.approx(100)
+    assert "support 4" in row.source
+
+
+def test_supports_without_a_known_room_are_not_judged(short_run, short):
+    lift = [0.0, 0.9, 0.060, 0.050, 0.0]
+    run = altered(short_run, CALM, uplift=lift, catenary=with_rooms(short, [None, None, None, 0.11, None]))
+    known, unknown = (r for r in criteria_rows(run, "AC") if r.name == "twice the uplift at steady arms")
+    assert (known.passed, unknown.passed) == (True, None)
+    assert unknown.value == pytest.approx(120)
+    assert "no uplift_room given, support 3" in unknown.source
+    bare = short.replace(supports=tuple(s.replace(steady_arm=None) for s in short.supports))
+    assert verdicts(altered(short_run, CALM, catenary=bare), known.name) == [None]
+
+
+def test_speed_against_the_wave_speed(short_run, short):
+    fastest = 0.7 * 3.6 * np.sqrt(20e3 / 1.35)
+    for kmh, expected in ((fastest - 0.01, True), (fastest + 0.01, False)):
+        assert verdicts(altered(short_run, CALM, kmh=kmh), "speed") == [expected]
+
+
+def test_elasticity_is_reported_where_it_is_known(short_run):
+    name = "elasticity non-uniformity"
+    assert verdicts(short_run, name) == []
+    row = criteria_rows(short_run, "AC", non_uniformity=0.4316)[-1]
+    assert (row.name, row.passed, row.value_text) == (name, None, "43.16 %")
+
+
+def test_each_pantograph_has_its_rows(short_run, pantograph):
+    data = altered(short_run, CALM).data.isel(pantograph=[0, 0])
+    forces = np.stack([np.full(short_run.time.size, f) for f in (CALM, 60.0)])
+    data["contact_force"] = data["contact_force"].copy(data=forces)
+    data = data.assign_coords(pantograph=["first", "second"])
+    data.attrs["pantographs"] = json.dumps([pantograph.model_dump(mode="json")] * 2)
+    rows = criteria_rows(cf.Run(data), "AC")
+    assert [(r.name, r.pantograph) for r in missed(rows)] == [("mean force", "second")]
+    assert len([r for r in rows if r.pantograph == "first"]) == 7
+    assert len([r for r in rows if r.pantograph is None]) == 2
+    assert labels(rows)[0] == "mean force, first"
+    assert labels(criteria_rows(short_run, "AC"))[0] == "mean force"
+
+
+def test_recalled_limits_are_marked(short_run):
+    def recalled(kmh):
+        return [r.recalled for r in criteria_rows(altered(short_run, CALM, kmh=kmh), "AC")][:7]
+
+    # minimum, maximum, σ, statistical minimum, two maxima, contact loss
+    assert recalled(250) == [True, False, False, False, True, True, True]
+    assert recalled(200) == [True, True, False, False, True, True, True]
+    for row in criteria_rows(short_run, "DC 3 kV"):
+        assert row.recalled == ("recalled" in row.source)
+
+
+@pytest.mark.parametrize(
+    ("relation", "on_the_limit"), [("at most", True), ("at least", True), ("above", False)]
+)
+def test_on_the_limit(relation, on_the_limit):
+    row = cf.Criterion(name="x", value=1.0, relation=relation, limit=1.0, unit="N", source="")
+    assert row.passed is on_the_limit
+    assert replace(row, limit=None).passed is None
+
+
+def test_rows_are_ready_for_json(short_run):
+    records = [row.as_dict() for row in criteria_rows(short_run, "AC", non_uniformity=0.4)]
+    again = json.loads(json.dumps(records, allow_nan=False))
+    assert again == records
+    assert set(again[0]) == {
+        "name", "pantograph", "value", "relation", "limit", "unit", "source", "recalled", "tolerance",
+        "passed",
+    }  # fmt: skip
+
+
+def test_value_and_limit_never_look_the_same_unless_they_are():
+    row = cf.Criterion(name="x", value=350.003, limit=350.0, unit="N", source="")
+    assert (row.value_text, row.limit_text, row.verdict) == ("350.003 N", "at most 350.000 N", "missed")
