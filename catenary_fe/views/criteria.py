@@ -31,9 +31,10 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     ax.invert_yaxis()
     ax.set_xlim(0, 1.6 * end)
     ax.set_xticks([x for x in ax.get_xticks() if x <= end])
-    return finish(
-        ax, "share of the limit that is used (%)", "", f"{title}: criteria" if title else "criteria"
-    )
+    heading = f"{title}: criteria" if title else "criteria"
+    finish(ax, "share of the limit that is used (%)", "", heading)
+    ax.grid(visible=False, axis="y")
+    return ax
 
 
 def limit_used(row: Criterion) -> float | None:
