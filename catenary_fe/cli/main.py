@@ -8,8 +8,10 @@ import sys
 import click
 
 from catenary_fe.cli.design import form, info, static
+from catenary_fe.cli.export import export
 from catenary_fe.cli.modes import modes
 from catenary_fe.cli.paper import paper
+from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.validate import validate
@@ -34,7 +36,7 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, paper, validate, schema):
+for command in (info, form, static, modes, run, rerun, export, paper, validate, schema):
     commands.add_command(command)
 
 

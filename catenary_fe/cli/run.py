@@ -9,6 +9,7 @@ import click
 
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -40,6 +41,9 @@ Examples:
   catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o out
   catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json
   catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC"""
+
+
+WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
 class _ManyValues(click.Command):
@@ -82,8 +86,13 @@ def _is_number(text: str) -> bool:
     show_default=True,
 )
 @spans_option
-@click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
 @planar_option
+@click.option(
+    "--store-wire-ms",
+    type=click.FloatRange(0.0),
+    help="Interval of the stored shapes of the whole wires, 0 for none; unset: 10 with -o, which reports and"
+    " films need.",
+)
 @click.option(
     "--criteria",
     "system",
@@ -118,6 +127,9 @@ def run(
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
+    files = InputFiles.read(layout, names)
+    if store_wire_ms is None:
+        store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
@@ -129,7 +141,7 @@ def run(
                 speed=speed_kmh / 3.6,
                 positions=positions or None,
                 time=time,
-                store_wire=store_wire_ms / 1e3 if store_wire_ms is not None else None,
+                store_wire=store_wire_ms / 1e3 if store_wire_ms else None,
                 progress=progress,
             )
         summary = result.summary(filter=filter_kind)
@@ -138,6 +150,7 @@ def run(
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
             write_run(folder, shape, result, summary, rows)
+            files.keep(folder, result, _options(click.get_current_context()))
     if as_json:
         print_json(summary)
     elif not quiet:
@@ -149,6 +162,22 @@ def run(
     if not as_json:
         print_warnings(summary["warnings"])
     return exit_code(rows)
+
+
+def _options(context: click.Context) -> list[str]:
+    """The options as they were given, but for pantographs and what only concerns the output."""
+    words: list[str] = []
+    for option in context.command.params:
+        name = option.name or ""
+        given = context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+        if not given or name in ("layout", "names", "output", "as_json", "quiet"):
+            continue
+        value = context.params[name]
+        if name == "spans":
+            value = ",".join(map(str, value))
+        for each in value if isinstance(value, tuple) else (value,):
+            words += [option.opts[0], f"{each:g}" if isinstance(each, float) else str(each)]
+    return words
 
 
 def write_run(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.wires import WireHistory, wire_histories
 from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
 
 if TYPE_CHECKING:
@@ -28,8 +29,9 @@ class Run:
     """Histories of a run, as an xarray Dataset with units, and what they came from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
-        dropper_force, support_uplift, and contact_wire_height where the whole wire was stored; each has
-        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
+        dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
+        were stored; each has ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions
+        and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 
@@ -76,6 +78,10 @@ class Run:
     def step(self) -> float:
         """[s] between the times."""
         return float(self.time[1] - self.time[0])
+
+    def wires(self) -> tuple[WireHistory, ...]:
+        """Whole wires over time, contact wires first. Raises InputError where the run stored none."""
+        return wire_histories(self.data)
 
     def window(self, pantograph: int, spans: Sequence[int] | None = None) -> NDArray[np.bool_]:
         """Shape (times,): when a pantograph (from 0) is inside the given spans.
