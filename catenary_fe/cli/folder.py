@@ -44,9 +44,20 @@ class Folder:
 
     def picture(self, name: str, ax: Axes) -> None:
         """Write a picture as PNG."""
-        figure = ax.get_figure(root=True)
-        assert figure is not None
-        figure.savefig(self.path / name, dpi=130, metadata={"Software": None})
+        save_picture(self.path / name, ax)
+
+
+def save_picture(path: Path, ax: Axes) -> None:
+    """Write a picture in the format of the file's ending. Raises InputError where that cannot be."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    try:
+        metadata = {"Software": None} if path.suffix == ".png" else None
+        figure.savefig(path, dpi=130, metadata=metadata)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    except ValueError as error:  # an unknown format
+        raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from catenary_fe.cli.design import form, info, static
 from catenary_fe.cli.export import export
 from catenary_fe.cli.modes import modes
 from catenary_fe.cli.paper import paper
+from catenary_fe.cli.pictures import film, waves
 from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
@@ -36,7 +37,7 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, rerun, export, paper, validate, schema):
+for command in (info, form, static, modes, run, film, waves, export, rerun, paper, validate, schema):
     commands.add_command(command)
 
 

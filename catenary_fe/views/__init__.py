@@ -5,6 +5,7 @@ from catenary_fe.views.layout import plot_elasticity, plot_layout, plot_static_s
 from catenary_fe.views.modes import plot_mode, plot_spectrum
 from catenary_fe.views.plan import plot_plan
 from catenary_fe.views.run import plot_contact_force, plot_dropper_forces, plot_support_uplift
+from catenary_fe.views.run_waves import plot_run_waves
 from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surface
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "plot_layout",
     "plot_mode",
     "plot_plan",
+    "plot_run_waves",
     "plot_space_time",
     "plot_spectrum",
     "plot_static_shape",

@@ -113,3 +113,59 @@ def test_folders_that_hold_no_run(capsys, tmp_path, command):
     assert (code, out) == (3, "")
     assert "holds no run.nc; give a folder that 'catenary-fe run ... -o DIR' wrote" in err
     assert len(err.splitlines()) == 1
+
+
+def test_film(capsys, folder, tmp_path):
+    from PIL import Image
+
+    for name in ("run.gif", "run.mp4"):
+        path = tmp_path / name
+        code, out, _ = call(capsys, "film", folder, "--slowed", 2, "--fps", 10, "-o", path)
+        assert code == 0
+        assert out.startswith(f"{path}: ")
+        assert path.stat().st_size > 20_000
+    with Image.open(tmp_path / "run.gif") as picture:
+        # 60 m and the 18 m between the pantographs at 55.6 m/s, and 9 m before and behind
+        assert picture.n_frames == pytest.approx(20 * (60 + 18 + 18) / 55.6, abs=2)
+        picture.seek(picture.n_frames // 2)
+        colours = {c for _, c in picture.convert("RGB").getcolors(100_000)}
+    assert any(r > 180 and 50 < g < 110 and b < 60 for r, g, b in colours)  # the contact wire is there
+
+
+def test_waves(capsys, folder, tmp_path):
+    for quantity in ("velocity", "deflection"):
+        path = tmp_path / f"{quantity}.png"
+        code, out, _ = call(capsys, "waves", folder, "--quantity", quantity, "-o", path)
+        assert (code, out.strip()) == (0, str(path))
+        assert path.stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["film", "-o", "run.avi"], "ends with .gif or .mp4"),
+        (["film", "-o", "no/run.gif"], "cannot be written: No such file"),
+        (["film", "--slowed", "0", "-o", "run.gif"], "slowed = 0.0: must be above 0"),
+        (["film", "--fps", "100", "-o", "run.gif"], "must be 1 to 50"),
+        (["film", "--spans", "8", "-o", "run.gif"], "the line has spans 1 to 3"),
+        (["waves", "--spans", "8", "-o", "run.png"], "the line has spans 1 to 3"),
+        (["waves", "--wire", "stitch wire", "-o", "run.png"], "stored 'contact wire', 'messenger wire'"),
+        (["waves", "-o", "run.xyz"], "run.xyz: Format 'xyz' is not supported"),
+    ],
+)
+def test_bad_questions(capsys, folder, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = call(capsys, arguments[0], folder, *arguments[1:])
+    assert (code, out) == (3, "")
+    assert said in err
+    assert len(err.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_runs_without_wire_shapes(capsys, folder, tmp_path):
+    run = cf.load_run(folder / "run.nc")
+    cf.Run(run.data.drop_dims("wire_time")).save(tmp_path / "run.nc")
+    for command in ("film", "waves"):
+        code, _, err = call(capsys, command, tmp_path, "-o", tmp_path / "x.gif")
+        assert code == 3
+        assert "the run holds no wire shapes; run again with --store-wire-ms 10" in err
