@@ -57,25 +57,34 @@ def repeat(run: Run, progress: Callable[[float], None] | None = None) -> Repetit
     )
 
 
+def shape_of(run: Run) -> Shape:
+    """The static shape that a run started from, found again on its mesh. Raises InputError."""
+    mesh, _ = _settings(run)
+    return find_form(run.catenary, mesh)
+
+
 def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, Run]:
     if run.method != "nonlinear":
         raise InputError(f"method {run.method!r}: only nonlinear runs can be repeated")
-    settings = json.loads(run.data.attrs["settings"])
-    try:
-        mesh, time = MeshSettings(**settings["mesh"]), TimeSettings(**settings["time"])
-    except TypeError as error:
-        raise InputError(f"settings of the run are not those of this version: {error}") from None
-    shape, stored = find_form(run.catenary, mesh), run.data.get("wire_time")
+    shape, stored = shape_of(run), run.data.get("wire_time")
     again = simulate(
         shape,
         run.pantographs,
         speed=run.speed,
         positions=run.data["position"].values[:, 0].tolist(),
-        time=time,
+        time=_settings(run)[1],
         store_wire=float(stored[1] - stored[0]) if stored is not None and stored.size > 1 else None,
         progress=progress,
     )
     return shape, again
+
+
+def _settings(run: Run) -> tuple[MeshSettings, TimeSettings]:
+    settings = json.loads(run.data.attrs["settings"])
+    try:
+        return MeshSettings(**settings["mesh"]), TimeSettings(**settings["time"])
+    except TypeError as error:
+        raise InputError(f"settings of the run are not those of this version: {error}") from None
 
 
 def _difference(run: Run, again: Run, variable: str) -> float:

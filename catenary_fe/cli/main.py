@@ -12,6 +12,7 @@ from catenary_fe.cli.export import export
 from catenary_fe.cli.modes import modes
 from catenary_fe.cli.paper import paper
 from catenary_fe.cli.pictures import film, waves
+from catenary_fe.cli.report import report
 from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
@@ -37,7 +38,7 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, film, waves, export, rerun, paper, validate, schema):
+for command in (info, form, static, modes, run, report, film, waves, export, rerun, paper, validate, schema):
     commands.add_command(command)
 
 

@@ -7,6 +7,7 @@ from catenary_fe.views.plan import plot_plan
 from catenary_fe.views.run import plot_contact_force, plot_dropper_forces, plot_support_uplift
 from catenary_fe.views.run_waves import plot_run_waves
 from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surface
+from catenary_fe.views.spectrum import plot_force_spectrum
 
 __all__ = [
     "plot_contact_force",
@@ -14,6 +15,7 @@ __all__ = [
     "plot_dropper_forces",
     "plot_elasticity",
     "plot_family",
+    "plot_force_spectrum",
     "plot_layout",
     "plot_mode",
     "plot_plan",

@@ -70,11 +70,12 @@ def _window(run: Run, spans: Sequence[int] | None) -> tuple[float, float, float,
         spans = range(max(1, min(evaluated) - 1), min(supports.size - 1, max(evaluated) + 1) + 1)
     elif not (min(spans) >= 1 and max(spans) < supports.size):
         raise InputError(f"spans {list(spans)}: the line has spans 1 to {supports.size - 1}")
-    start, end = float(supports[min(spans) - 1]), float(supports[max(spans)])
+    numbers = [int(n) for n in spans]
+    start, end = float(supports[min(numbers) - 1]), float(supports[max(numbers)])
     positions = run.data["position"].values
     first, last = positions.max(axis=0), positions.min(axis=0)
-    begin = run.time[min(np.searchsorted(first, start), run.time.size - 1)]
-    stop = run.time[min(np.searchsorted(last, end), run.time.size - 1)]
+    begin = run.time[min(int(np.searchsorted(first, start)), run.time.size - 1)]
+    stop = run.time[min(int(np.searchsorted(last, end)), run.time.size - 1)]
     if stop <= begin:
         raise InputError(f"no pantograph was ever inside spans {list(spans)}")
     return start, end, float(begin), float(stop)

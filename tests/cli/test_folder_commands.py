@@ -1,6 +1,7 @@
 """Commands that work on a run's folder: it holds what they need, and says so where it does not."""
 
 import csv
+import html
 import json
 
 import numpy as np
@@ -107,7 +108,7 @@ def test_export(capsys, folder, tmp_path):
         assert "dropper_27_at_175_m_force_N" in file.readline()
 
 
-@pytest.mark.parametrize("command", [["rerun"], ["export"]])
+@pytest.mark.parametrize("command", [["rerun"], ["export"], ["report"]])
 def test_folders_that_hold_no_run(capsys, tmp_path, command):
     code, out, err = call(capsys, *command, tmp_path)
     assert (code, out) == (3, "")
@@ -169,3 +170,44 @@ def test_runs_without_wire_shapes(capsys, folder, tmp_path):
         code, _, err = call(capsys, command, tmp_path, "-o", tmp_path / "x.gif")
         assert code == 3
         assert "the run holds no wire shapes; run again with --store-wire-ms 10" in err
+
+
+def test_report(capsys, folder):
+    code, out, _ = call(capsys, "report", folder)
+    page = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
+    (folder / "report.html").unlink()
+    assert code == 0
+    assert "report.html: " in out
+    for text in ("Checks and warnings", "mine", "EN 50318:2002 reference model", "Dropper schedule",
+                 "secondary source", "causal low-pass", "Permission is hereby granted"):  # fmt: skip
+        assert text in page
+    summary = json.loads((folder / "summary.json").read_text())
+    for pantograph in summary["pantographs"]:
+        assert f">{pantograph['std_N']:.1f}<" in page
+    for warning in summary["warnings"]:
+        assert warning in page
+    assert len(page) < 15e6
+
+
+def test_report_without_wire_shapes_and_masses(capsys, folder, tmp_path):
+    """What a run does not hold is left out; the rest is there."""
+    run = cf.load_run(folder / "run.nc")
+    data = run.data.drop_dims("wire_time")
+    elastic = cf.ElasticPantograph(name="push", force=100.0, stiffness=20.0).model_dump(mode="json")
+    data.attrs["pantographs"] = json.dumps([elastic, elastic])
+    cf.Run(data).save(tmp_path / "run.nc")
+    code, _, _ = call(
+        capsys, "report", tmp_path / "run.nc", "-o", tmp_path / "r.html", "--filter", "zero-phase"
+    )
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert code == 0
+    assert "zero-phase low-pass" in page
+    assert "100 N, falling by 20 N/m" in page
+    assert 'id="stage"' not in page
+    assert 'id="waves"' not in page
+
+
+def test_a_report_that_cannot_be_written(capsys, folder, tmp_path):
+    code, _, err = call(capsys, "report", folder, "-o", tmp_path / "no" / "r.html")
+    assert code == 3
+    assert "cannot be written: No such file or directory" in err
