@@ -7,6 +7,7 @@ import sys
 
 import click
 
+from catenary_fe.cli.compare import compare
 from catenary_fe.cli.design import form, info, static
 from catenary_fe.cli.export import export
 from catenary_fe.cli.modes import modes
@@ -38,7 +39,22 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, report, film, waves, export, rerun, paper, validate, schema):
+for command in (
+    info,
+    form,
+    static,
+    modes,
+    run,
+    report,
+    compare,
+    film,
+    waves,
+    export,
+    rerun,
+    paper,
+    validate,
+    schema,
+):
     commands.add_command(command)
 
 

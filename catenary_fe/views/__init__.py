@@ -1,5 +1,6 @@
 """Pictures. The only room that imports matplotlib; nothing is shown on a screen, axes are returned."""
 
+from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 from catenary_fe.views.criteria import plot_criteria
 from catenary_fe.views.layout import plot_elasticity, plot_layout, plot_static_shape
 from catenary_fe.views.modes import plot_mode, plot_spectrum
@@ -15,6 +16,7 @@ __all__ = [
     "plot_dropper_forces",
     "plot_elasticity",
     "plot_family",
+    "plot_force_comparison",
     "plot_force_spectrum",
     "plot_layout",
     "plot_mode",
@@ -25,4 +27,5 @@ __all__ = [
     "plot_static_shape",
     "plot_support_uplift",
     "plot_surface",
+    "plot_uplift_comparison",
 ]

@@ -211,3 +211,75 @@ def test_a_report_that_cannot_be_written(capsys, folder, tmp_path):
     code, _, err = call(capsys, "report", folder, "-o", tmp_path / "no" / "r.html")
     assert code == 3
     assert "cannot be written: No such file or directory" in err
+
+
+def changed(folder, target, **attributes):
+    """A copy of a run with other inputs on record and a contact force that is 2 N larger."""
+    data = cf.load_run(folder / "run.nc").data
+    data["contact_force"] += 2.0
+    data.attrs |= attributes
+    target.mkdir()
+    cf.Run(data).save(target / "run.nc")
+    return target
+
+
+def test_compare(capsys, folder, tmp_path):
+    catenary = cf.load_run(folder / "run.nc").catenary
+    tighter = catenary.replace(contact_wire=catenary.contact_wire.replace(tension=22e3))
+    other = changed(folder, tmp_path / "other", speed=60.0, catenary=tighter.model_dump_json())
+    code, out, err = call(capsys, "compare", folder, other, "--json", "-o", tmp_path / "comparison")
+    result = json.loads(out)
+    assert (code, err) == (0, "")
+    assert result["inputs_that_differ"] == [
+        {"name": "speed (km/h)", "run": "200", "other": "216"},
+        {"name": "catenary: contact wire: tension", "run": "20000", "other": "22000"},
+    ]
+    assert [r["label"] for r in result["runs"]] == [
+        "run: mine", "run: EN 50318:2002", "other: mine", "other: EN 50318:2002",
+    ]  # fmt: skip
+    for before, after in zip(result["runs"][:2], result["runs"][2:], strict=True):
+        assert after["mean_N"] - before["mean_N"] == pytest.approx(2)
+        assert after["std_N"] == pytest.approx(before["std_N"])
+    page = (tmp_path / "comparison" / "comparison.html").read_text()
+    assert "catenary: contact wire: tension" in page
+    assert page.count("data:image/svg+xml;base64,") == 2
+    assert {p.name for p in (tmp_path / "comparison").iterdir()} == {
+        "comparison.json", "comparison.csv", "comparison.html", "contact_force.png", "support_uplift.png",
+    }  # fmt: skip
+
+
+def test_compare_prints_differences(capsys, folder, tmp_path):
+    data = cf.load_run(folder / "run.nc").data.isel(pantograph=[0])
+    data.attrs["pantographs"] = json.dumps(json.loads(data.attrs["pantographs"])[:1])
+    single = tmp_path / "single"
+    single.mkdir()
+    cf.Run(data).save(single / "run.nc")
+    other = changed(single, tmp_path / "other")
+    code, out, _ = call(capsys, "compare", single, other)
+    assert code == 0
+    assert "the inputs are the same" in out
+    mean = next(line for line in out.splitlines() if "mean force" in line)
+    assert "+2.0" in mean
+
+
+def test_compare_needs_two(capsys, folder):
+    code, _, err = call(capsys, "compare", folder)
+    assert code == 3
+    assert "1 run to compare: give at least two" in err
+
+
+def test_many_values_are_told_by_their_reach(folder, tmp_path):
+    from catenary_fe.results.comparison import input_differences
+
+    run = cf.load_run(folder / "run.nc")
+    spans = tuple(
+        span.replace(droppers=tuple(d.replace(position=d.position + 0.1 * i) for d in span.droppers))
+        for i, span in enumerate(run.catenary.spans)
+    )
+    shifted = run.catenary.replace(spans=spans).model_dump_json()
+    other = cf.load_run(changed(folder, tmp_path / "other", catenary=shifted) / "run.nc")
+    (difference,) = input_differences([run, other])
+    assert difference.name == "catenary: spans: droppers: position"
+    assert difference.values == (
+        "27 values: 5, 10.5, 17, 23.5, 30, 36.5, 43, 49.5, 55", "27 different values, 5 to 55.2",
+    )  # fmt: skip

@@ -2,15 +2,8 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import json
-from functools import cache
-from importlib import resources
-from typing import TYPE_CHECKING, Any
-
-from matplotlib import rc_context
-from matplotlib.axes import Axes
+from typing import Any
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity, Run
@@ -19,13 +12,9 @@ from catenary_fe.system import InputError
 from catenary_fe.views import layout, run_waves
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
+from catenary_fe.views.report.html import svg_address, template
 from catenary_fe.views.spectrum import plot_force_spectrum
 from catenary_fe.views.style import new_axes
-
-if TYPE_CHECKING:
-    from jinja2 import Template
-
-ASSETS = ("uPlot.min.css", "report.css", "uPlot.iife.min.js", "report.js", "uPlot.LICENSE")
 
 
 def report_page(
@@ -69,7 +58,7 @@ def report_page(
         "footer": "Everything on this page was computed by catenary_fe; how far that can be trusted is in its"
         " validation report.",
     }
-    return _template().render(content)
+    return template("report.html.j2").render(content)
 
 
 def _lead(run: Run) -> str:
@@ -84,37 +73,17 @@ def _lead(run: Run) -> str:
 def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: bool) -> dict[str, str]:
     """Addresses of the pictures by name, the pictures inside them."""
     pictures = {
-        "force": _svg(run_pictures.plot_contact_force(run)),
-        "spectrum": _svg(plot_force_spectrum(run)),
-        "uplift": _svg(run_pictures.plot_support_uplift(run)),
-        "droppers": _svg(run_pictures.plot_dropper_forces(run)),
-        "layout": _svg(layout.plot_layout(shape.catenary, shape)),
-        "shape": _svg(layout.plot_static_shape(shape)),
+        "force": svg_address(run_pictures.plot_contact_force(run)),
+        "spectrum": svg_address(plot_force_spectrum(run)),
+        "uplift": svg_address(run_pictures.plot_support_uplift(run)),
+        "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
+        "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
+        "shape": svg_address(layout.plot_static_shape(shape)),
     }
     if elasticity:
-        pictures["elasticity"] = _svg(layout.plot_elasticity(elasticity))
+        pictures["elasticity"] = svg_address(layout.plot_elasticity(elasticity))
     if waves:
-        pictures["waves"] = _svg(run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150)
+        pictures["waves"] = svg_address(
+            run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150
+        )
     return pictures
-
-
-def _svg(ax: Axes, dpi: int = 100) -> str:
-    """A data address of the picture as SVG: sharp on paper, and the same bytes each time."""
-    figure, file = ax.get_figure(root=True), io.BytesIO()
-    assert figure is not None
-    with rc_context({"svg.hashsalt": "catenary_fe", "path.simplify_threshold": 0.3}):
-        figure.savefig(file, format="svg", dpi=dpi, metadata={"Date": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(file.getvalue()).decode("ascii")
-
-
-@cache
-def _template() -> Template:
-    """The page's template, with style and scripts as they are."""
-    from jinja2 import Environment, StrictUndefined
-    from markupsafe import Markup
-
-    folder = resources.files(__package__).joinpath("assets")
-    assets = {name: Markup(folder.joinpath(name).read_text(encoding="utf-8")) for name in ASSETS}
-    environment = Environment(autoescape=True, undefined=StrictUndefined)
-    environment.globals["assets"] = assets
-    return environment.from_string(folder.joinpath("report.html.j2").read_text(encoding="utf-8"))
