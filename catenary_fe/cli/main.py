@@ -18,6 +18,7 @@ from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.validate import validate
+from catenary_fe.cli.view import view
 from catenary_fe.system import CatenaryError
 
 EPILOG = """\b
@@ -49,6 +50,7 @@ for command in (
     compare,
     film,
     waves,
+    view,
     export,
     rerun,
     paper,

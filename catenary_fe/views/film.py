@@ -190,6 +190,18 @@ class _View:
             )
 
 
+def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Save one picture, shape (height, width, 3). Raises InputError where that cannot be."""
+    from PIL import Image
+
+    try:
+        Image.fromarray(pixels).save(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    except ValueError as error:  # an unknown format
+        raise InputError(f"{path}: {error}") from None
+
+
 def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:
     from PIL import Image
 
