@@ -8,7 +8,14 @@ from typing import Any
 import click
 
 from catenary_fe.cli.folder import output_folder, run_in
-from catenary_fe.cli.terminal import json_option, output_option, print_json, print_table, quiet_option
+from catenary_fe.cli.terminal import (
+    json_option,
+    output_option,
+    print_json,
+    print_table,
+    quiet_option,
+    working,
+)
 
 
 @click.command(
@@ -42,7 +49,7 @@ def compare(
         "runs": [{"label": column.label, **column.values} for column in columns],
         "filter": filter_kind,
     }
-    with output_folder(output) as folder:
+    with output_folder(output) as folder, working("pictures", bool(output) and not quiet):
         if folder:
             from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
             from catenary_fe.views.report.comparison import comparison_page

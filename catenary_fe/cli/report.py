@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from catenary_fe.cli.folder import run_in
-from catenary_fe.cli.terminal import progress_bar, quiet_option
+from catenary_fe.cli.terminal import progress_bar, quiet_option, working
 from catenary_fe.results import Run
 from catenary_fe.system import InputError
 
@@ -39,14 +39,12 @@ def report(folder: str, output: str | None, filter_kind: Any, quiet: bool) -> No
     run = run_in(folder)
     place = Path(folder) if Path(folder).is_dir() else Path(folder).parent
     target = Path(output) if output else place / "report.html"
-    with progress_bar("report", not quiet) as progress:
+    with progress_bar("elasticity", not quiet) as progress:
         shape = shape_of(run)
         curve = elasticity(
-            shape,
-            spans=run.evaluated_spans[:2],
-            points_per_span=_POINTS_A_SPAN,
-            progress=(lambda share: progress(0.6 * share)) if progress else None,
+            shape, spans=run.evaluated_spans[:2], points_per_span=_POINTS_A_SPAN, progress=progress
         )
+    with working("pictures", not quiet):
         page = report_page(run, shape, curve, filter=filter_kind or _filter_of(place, run))
     try:
         target.write_text(page, encoding="utf-8")

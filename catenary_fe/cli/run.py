@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.inputs import InputFiles
@@ -23,6 +24,7 @@ from catenary_fe.cli.terminal import (
     read_layout,
     spans_option,
     warned,
+    working,
 )
 from catenary_fe.system import (
     InputError,
@@ -72,7 +74,12 @@ def _is_number(text: str) -> bool:
 @click.command(cls=_ManyValues, epilog=EPILOG)
 @layout_argument
 @click.option(
-    "--pantograph", "names", multiple=True, required=True, help="Name in the library, or TOML file."
+    "--pantograph",
+    "names",
+    multiple=True,
+    required=True,
+    shell_complete=pantograph_names,
+    help="Name in the library, or TOML file.",
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
@@ -133,7 +140,8 @@ def run(
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        shape = find_form(catenary, mesh)
+        with working("form finding", not quiet):
+            shape = find_form(catenary, mesh)
         with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress:
             result = simulate(
                 shape,
@@ -149,7 +157,8 @@ def run(
         if system:
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
-            write_run(folder, shape, result, summary, rows)
+            with working("pictures", not quiet):
+                write_run(folder, shape, result, summary, rows)
             files.keep(folder, result, _options(click.get_current_context()))
     if as_json:
         print_json(summary)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from catenary_fe.cli.folder import run_in
-from catenary_fe.cli.terminal import quiet_option, spans_option
+from catenary_fe.cli.terminal import quiet_option, spans_option, working
 from catenary_fe.system import InputError, load_catenary
 
 if TYPE_CHECKING:
@@ -30,7 +30,8 @@ def view(layout_or_folder: str, spans: list[int] | None, output: str | None, qui
     from catenary_fe.fe.viewer import require_screen, view_model
 
     require_screen()
-    shape = _shape(layout_or_folder)
+    with working("form finding", not quiet):
+        shape = _shape(layout_or_folder)
     last = len(shape.catenary.spans)
     shown = spans or [min(2, last)]
     if not (min(shown) >= 1 and max(shown) <= last):
