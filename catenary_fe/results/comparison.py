@@ -79,10 +79,13 @@ def input_differences(runs: Sequence[Run]) -> list[InputDifference]:
     names = dict.fromkeys(name for inputs in found for name in inputs)
     differences = []
     for name in names:
-        values = [inputs.get(name) for inputs in found]
-        texts = tuple(map(_text, values))
-        if any(v != values[0] for v in values) and len(set(texts)) > 1:
-            differences.append(InputDifference(name, texts))
+        values = [inputs.get(name, []) for inputs in found]
+        texts = [_text(v) for v in values]
+        for i, each in enumerate(values):
+            if texts[i] == texts[0] and len(each) == len(values[0]) and each != values[0]:
+                texts[i] += ", in other places"
+        if len(set(texts)) > 1:
+            differences.append(InputDifference(name, tuple(texts)))
     return differences
 
 
@@ -93,6 +96,8 @@ def _inputs(run: Run) -> dict[str, list[Any]]:
         "method": run.method,
         "evaluated spans": ", ".join(map(str, run.evaluated_spans)),
         "start (m)": run.data["position"].values[:, 0].round(9).tolist(),
+        "number of spans": len(run.catenary.spans),
+        "number of droppers": len(run.catenary.droppers),
         "catenary": json.loads(attrs["catenary"]) | {"evaluated_spans": None},
         **{f"pantograph {i}": p for i, p in enumerate(json.loads(attrs["pantographs"]), start=1)},
         "settings": json.loads(attrs["settings"]),
@@ -115,9 +120,9 @@ def _leaves(value: Any, name: str) -> Iterator[tuple[str, Any]]:
         yield name, value
 
 
-def _text(values: list[Any] | None) -> str:
+def _text(values: list[Any]) -> str:
     """The different values in their order; many of them by how many they are and how far they reach."""
-    different = list(dict.fromkeys(v for v in values or () if v is not None))
+    different = list(dict.fromkeys(v for v in values if v is not None))
     if not different:
         return "–"
     text = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in different[:_LISTED])
@@ -125,4 +130,4 @@ def _text(values: list[Any] | None) -> str:
         numbers = [v for v in different if isinstance(v, int | float)]
         reach = f", {min(numbers):g} to {max(numbers):g}" if numbers else ""
         text = f"{len(different)} different values{reach}"
-    return text if len(values or ()) == len(different) else f"{len(values or ())} values: {text}"
+    return text

@@ -154,7 +154,7 @@ class Run:
         path = Path(path)
         aside = path.with_name(path.name + ".part")
         try:
-            self.data.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
+            self.data.drop_encoding().to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
             aside.replace(path)
         except OSError as error:
             raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
