@@ -178,6 +178,12 @@ class Run:
 
         return plot_dropper_forces(self, ax=ax)
 
+    def plot_waves(self, ax: Axes | None = None) -> Axes:
+        """Waves on the contact wire over place and time. See :func:`catenary_fe.views.plot_run_waves`."""
+        from catenary_fe.views import plot_run_waves
+
+        return plot_run_waves(self, ax=ax)
+
 
 def load_run(path: str | Path) -> Run:
     """Read a run that was saved. Raises InputError where the file is missing, damaged or something else."""

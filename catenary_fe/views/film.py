@@ -113,7 +113,7 @@ class _View:
         """Axes and everything that stands still; returns what moves."""
         ax, low = self._wires, scene.nominal - _MASS_GAP * (1.5 + max(len(m) for m in scene.masses))
         supports = scene.support_x
-        high = max(float(wire.static.max()) for wire in scene.wires)
+        high = max(float(np.nanmax(wire.static)) for wire in scene.wires)
         mark_supports(ax, supports, label=False)
         mark_supports(self._force, supports, label=False)
         ax.set_xlim(self.start, self.end)

@@ -55,7 +55,7 @@ def plot_run_waves(
         values,
         lines=_lines(run, start, end, begin, stop),
         supports=run.data["support_position"].values,
-        limit=float(np.percentile(np.abs(values), _SHOWN)),
+        limit=float(np.nanpercentile(np.abs(values), _SHOWN)),
         quantity=_LABELS[quantity],
         title=title,
         ax=ax,

@@ -24,7 +24,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
     """Contact force against the position along the line, all pantographs over one axis."""
     positions, every = run.data["position"].values, _stride(run.time.size)
     way = run.speed * run.step * every
-    x = np.arange(positions.min(), positions.max() + way / 2, way)
+    x = np.minimum(np.arange(positions.min(), positions.max() + way / 2, way), positions.max())
     filtered, raw = run.filtered_contact_force(filter), run.data["contact_force"].values
     names, statistics = run.data["pantograph"].values, run.contact_force_statistics(filter=filter)
     series = []
