@@ -40,7 +40,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
         for i, s in enumerate(statistics)
         for value, dashed in ((s.mean, False), (s.statistical_max, True), (s.statistical_min, True))
     ]
-    return {"x": _numbers(x, 2), "series": series, "lines": lines, "band": _evaluated(run),
+    return {"x": _numbers(x, 3), "series": series, "lines": lines, "band": _evaluated(run),
             "marks": _numbers(run.data["support_position"].values, 3)}  # fmt: skip
 
 
