@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from catenary_fe.cli.folder import run_in, save_picture
-from catenary_fe.cli.terminal import progress_bar, quiet_option, spans_option
+from catenary_fe.cli.terminal import progress_bar, quiet_option, shown_spans_option
 
 
 @click.command(
@@ -19,7 +19,7 @@ from catenary_fe.cli.terminal import progress_bar, quiet_option, spans_option
 @click.option(
     "-o", "--output", type=click.Path(), required=True, metavar="FILE", help="Name with .gif or .mp4."
 )
-@spans_option
+@shown_spans_option
 @click.option("--slowed", type=float, default=4.0, show_default=True, help="Times slower than real time.")
 @click.option("--fps", type=int, default=20, show_default=True, help="Frames a second, at most 50.")
 @click.option(
@@ -65,7 +65,7 @@ def film(
     "--quantity", type=click.Choice(["velocity", "deflection"]), default="velocity", show_default=True
 )
 @click.option("--wire", default="contact wire", show_default=True, help="Which of the stored wires.")
-@spans_option
+@shown_spans_option
 @quiet_option
 def waves(folder: str, output: str, quantity: Any, wire: str, spans: list[int] | None, quiet: bool) -> None:
     """Draw the waves of the run in FOLDER over place and time, with the rays of the wave speed."""

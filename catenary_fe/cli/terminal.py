@@ -37,6 +37,9 @@ def _span_numbers(context: click.Context, parameter: click.Parameter, text: str 
 spans_option = click.option(
     "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
 )
+shown_spans_option = click.option(
+    "--spans", callback=_span_numbers, help="Spans to show, e.g. 5,6; unset: around the evaluated ones."
+)
 
 
 def read_layout(path: str, planar: bool) -> Catenary:

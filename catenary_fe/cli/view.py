@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from catenary_fe.cli.folder import run_in
-from catenary_fe.cli.terminal import quiet_option, spans_option, working
+from catenary_fe.cli.terminal import quiet_option, shown_spans_option, working
 from catenary_fe.system import InputError, load_catenary
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     "  catenary-fe view run300 -o model.png"
 )
 @click.argument("layout_or_folder", type=click.Path())
-@spans_option
+@shown_spans_option
 @click.option(
     "-o", "--output", type=click.Path(), metavar="FILE", help="Save the picture and close, as .png."
 )

@@ -36,7 +36,7 @@ def figures_table(columns: Sequence[Column]) -> Table:
         digits = 2 if key == "contact_loss_percent" else 0 if key == "slack_droppers" else 1
         texts = [f"{value:.{digits}f}" for value in values]
         if len(values) == 2:
-            texts.append(f"{values[1] - values[0]:+.{digits}f}")
+            texts.append(f"{round(values[1] - values[0], digits) + 0.0:+.{digits}f}")
         rows.append((name, *texts))
     names = [column.label for column in columns]
     return Table("", ("", *names, *(["difference"] if len(names) == 2 else [])), rows)

@@ -62,11 +62,12 @@ def report_page(
 
 
 def _lead(run: Run) -> str:
-    names = " and ".join(str(name) for name in run.data["pantograph"].values)
+    names = [str(name) for name in run.data["pantograph"].values]
+    whose = f" The figures below are those of {names[0]}." if len(names) > 1 else ""
     spans = ", ".join(map(str, run.evaluated_spans))
     return (
-        f"{names} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of which {spans}"
-        f" are evaluated; {run.time[-1]:.2f} s simulated."
+        f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of which"
+        f" {spans} are evaluated; {run.time[-1]:.2f} s simulated.{whose}"
     )
 
 

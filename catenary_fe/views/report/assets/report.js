@@ -162,7 +162,7 @@
       c.rect(left, 0, width - left - right, height);
       c.clip();
       const lines = this.drawWires(c, X, Z, frame, a, b);
-      this.drawPantographs(c, X, Z, F, frame, lines);
+      this.drawPantographs(c, X, Z, F, frame, lines, a, b);
       c.restore();
       this.say(frame);
     }
@@ -234,31 +234,39 @@
       return lines;
     }
 
-    drawPantographs(c, X, Z, F, frame, lines) {
+    drawPantographs(c, X, Z, F, frame, lines, a, b) {
       const magnified = +$("magnified").value, contact = this.m.wires.findIndex((w) => w.touched);
       const nominal = this.m.nominal;
-      for (const p of this.m.pantographs) {
+      this.m.pantographs.forEach((p, k) => {
         const x = p.x[frame], head = at(this.m.wires[contact].x, lines[contact], x);
         c.strokeStyle = c.fillStyle = p.colour;
         c.lineWidth = 1.5;
         line(c, X(x), Z(head), 0, Z(this.low) - Z(head));
         c.fillRect(X(x) - 11, Z(head), 22, 5);
-        p.masses.forEach((m, k) => {
-          if (k) c.fillRect(X(x) - 6, Z(nominal + magnified * m[frame] - 0.3 * k) - 5, 12, 10);
+        p.masses.forEach((m, n) => {
+          if (n) c.fillRect(X(x) - 6, Z(nominal + magnified * m[frame] - 0.3 * n) - 5, 12, 10);
         });
-        for (const [until, alpha] of [[p.x.length, 0.25], [frame + 1, 1]]) {
+        for (const [end, alpha] of [[b, 0.25], [Math.min(x, b), 1]]) {
           c.globalAlpha = alpha;
-          c.beginPath();
-          for (let i = 0; i < until; i++) {
-            if (i) c.lineTo(X(p.x[i]), F(p.force[i])); else c.moveTo(X(p.x[i]), F(p.force[i]));
-          }
-          c.stroke();
+          this.drawForce(c, X, F, k, a, end);
         }
         c.globalAlpha = 1;
         c.beginPath();
         c.arc(X(x), F(p.force[frame]), 4.5, 0, 7);
         c.fill();
+      });
+    }
+
+    drawForce(c, X, F, pantograph, start, end) {  // from the curve, which is finer than the frames
+      const x = data.force.x, values = data.force.series.filter((s) => !s.faint)[pantograph].values;
+      c.beginPath();
+      let pen = false;
+      for (let i = 0; i < x.length && x[i] <= end; i++) {
+        if (x[i] < start || values[i] == null) continue;
+        if (pen) c.lineTo(X(x[i]), F(values[i])); else c.moveTo(X(x[i]), F(values[i]));
+        pen = true;
       }
+      c.stroke();
     }
 
     say(frame) {
