@@ -182,6 +182,9 @@ def _options(context: click.Context) -> list[str]:
         if not given or name in ("layout", "names", "output", "as_json", "quiet"):
             continue
         value = context.params[name]
+        if value is True:
+            words.append(option.opts[0])
+            continue
         if name == "spans":
             value = ",".join(map(str, value))
         for each in value if isinstance(value, tuple) else (value,):

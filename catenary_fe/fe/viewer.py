@@ -15,7 +15,6 @@ from catenary_fe.fe.model import Installation, Model, build_model
 from catenary_fe.system import Catenary, InputError
 
 _SIZE = 1280, 640  # [pixels]
-_THICK = 0.05  # [m] drawn thickness of the wires
 _CONTACT, _MESSENGER = [0.77, 0.31, 0.11, 1.0], [0.12, 0.35, 0.52, 1.0]
 
 
@@ -51,7 +50,9 @@ def view_model(
         left, right = catenary.support_positions[[spans[0] - 1, spans[1]]]
         middle = catenary.contact_wire_height + catenary.system_height / 2
         height = 0.53 * (right - left) * _SIZE[1] / _SIZE[0]  # above and below the middle
-        container.renderer.SetModelView(zoom=height, centerPoint=[(left + right) / 2, middle, 0.0])
+        turned = [0.0, 0.0, 0.0] if model.axes == 2 else [-np.pi / 2, 0.0, 0.0]  # its y points up
+        centre = [(left + right) / 2, middle, 0.0]  # as seen, after the turn
+        container.renderer.SetModelView(zoom=height, rotationVector=turned, centerPoint=centre)
         picture: NDArray[np.uint8] = np.asarray(container.renderer.RedrawAndGetImage(), dtype=np.uint8)
         if wait:
             container.renderer.DoIdleTasks(-1, False)
@@ -63,10 +64,10 @@ def view_model(
 def _dress(model: Model) -> None:
     """Wires in their colours; the springs to the ground, which stands at the origin, are not shown."""
     mbs = model.mbs
-    for wire, colour in ((model.contact, _CONTACT), (model.messenger, _MESSENGER)):
+    for number, wire in enumerate(model.wires):
+        colour = _CONTACT if number < len(model.contacts) else _MESSENGER
         for element in wire.elements:
             mbs.SetObjectParameter(element, "Vcolor", colour)
-            mbs.SetObjectParameter(element, "VdrawHeight", _THICK)
     for number in range(mbs.systemData.NumberOfObjects()):
         if "ConnectorCoordinate" in mbs.GetObject(number)["objectType"]:
             mbs.SetObjectParameter(number, "Vshow", False)

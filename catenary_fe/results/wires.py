@@ -38,7 +38,7 @@ class WireHistory:
     @property
     def touched(self) -> bool:
         """Whether pantographs run along it: a contact wire."""
-        return self.name.startswith("contact wire")
+        return self.name.endswith("contact wire")
 
     @property
     def uplift(self) -> Floats:

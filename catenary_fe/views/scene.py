@@ -57,6 +57,7 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
     at = np.searchsorted(run.time, wires[0].time[chosen] - 0.5 * run.step)
     data = run.data
     dropper_x = np.asarray(data["dropper_position"].values)
+    hung = run.catenary.dropper_contact_wires
     masses = data["mass_height"].values
     return Scene(
         time=wires[0].time[chosen],
@@ -65,7 +66,9 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
             for wire in wires
         ),
         dropper_x=dropper_x,
-        dropper_ends=np.array([_ends(wires, x) for x in dropper_x], dtype=np.int64).reshape(-1, 2),
+        dropper_ends=np.array(
+            [_ends(wires, x, int(n)) for x, n in zip(dropper_x, hung, strict=True)], dtype=np.int64
+        ).reshape(-1, 2),
         dropper_slack=np.asarray(data["dropper_force"].values[:, at] <= 0).T,
         support_x=np.asarray(data["support_position"].values),
         pantograph_x=np.asarray(data["position"].values[:, at]),
@@ -75,9 +78,9 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
     )
 
 
-def _ends(wires: Sequence[WireHistory], x: float) -> tuple[int, int]:
-    """The contact wire at a dropper, and the lowest other wire above it there."""
+def _ends(wires: Sequence[WireHistory], x: float, number: int) -> tuple[int, int]:
+    """The contact wire (of this number, from 0) at a dropper, and the lowest other wire above it there."""
     heights = [float(np.interp(x, w.x, w.static, left=np.nan, right=np.nan)) for w in wires]
-    lower = next(i for i, wire in enumerate(wires) if wire.touched)
+    lower = [i for i, wire in enumerate(wires) if wire.touched][number]
     above = [i for i, wire in enumerate(wires) if not wire.touched and np.isfinite(heights[i])]
     return lower, min(above, key=lambda i: heights[i], default=lower)

@@ -49,10 +49,12 @@ def test_no_screen(reference_layout, display, said):
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_a_picture_of_the_model(reference_layout, screen, tmp_path):
+@pytest.mark.parametrize("name", ["en50318_2002", "en50318_2018_ac_simple"])  # in the plane, in space
+def test_a_picture_of_the_model(reference_layout, name, screen, tmp_path):
     from PIL import Image
 
-    done = view(reference_layout, "--spans", "2", "-o", str(tmp_path / "model.png"), display=screen)
+    layout = reference_layout.with_name(f"{name}.toml")
+    done = view(layout, "--spans", "2", "-o", str(tmp_path / "model.png"), display=screen)
     assert done.returncode == 0, done.stderr
     with Image.open(tmp_path / "model.png") as picture:
         pixels = np.asarray(picture.convert("RGB")).astype(int)
@@ -61,3 +63,4 @@ def test_a_picture_of_the_model(reference_layout, screen, tmp_path):
     messenger = (red < 150) & (green > 60) & (green < 200) & (blue > 100) & (blue > red + 40)
     assert contact.any(axis=0).mean() > 0.9  # across the whole picture
     assert messenger.any(axis=0).mean() > 0.9
+    assert np.flatnonzero(contact.any(axis=1)).min() > np.flatnonzero(messenger.any(axis=1)).min()  # below it

@@ -24,15 +24,15 @@ def spatial(short_run):
     data = data.assign_coords(
         stitch_wire_x=x,
         static_stitch_wire_height=("stitch_wire_x", static),
-        static_contact_wire_2_height=("x", data["static_contact_wire_height"].values),
+        static_left_contact_wire_height=("x", data["static_contact_wire_height"].values),
     )
-    data["contact_wire_2_height"] = data["contact_wire_height"] + 0.0
+    data["left_contact_wire_height"] = data["contact_wire_height"] + 0.0
     return cf.Run(data)
 
 
 def test_wires_in_their_order(spatial):
     names = [wire.name for wire in spatial.wires()]
-    assert names == ["contact wire", "contact wire 2", "messenger wire", "stitch wire"]
+    assert names == ["contact wire", "left contact wire", "messenger wire", "stitch wire"]
     assert [wire.touched for wire in spatial.wires()] == [True, True, False, False]
 
 

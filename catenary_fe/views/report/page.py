@@ -66,8 +66,8 @@ def _lead(run: Run) -> str:
     whose = f" The figures below are those of {names[0]}." if len(names) > 1 else ""
     spans = ", ".join(map(str, run.evaluated_spans))
     return (
-        f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of which"
-        f" {spans} are evaluated; {run.time[-1]:.2f} s simulated.{whose}"
+        f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of"
+        f" which {spans} are evaluated; {run.time[-1]:.2f} s simulated.{whose}"
     )
 
 

@@ -150,9 +150,39 @@ def _line_table(catenary: Catenary) -> Table:
         ("contact wire height", f"{catenary.contact_wire_height:g} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_height)} m"),
+        ("steady arms", _arms(catenary)),
         ("damping of the wires", f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s"),
+        ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
+        *_sideways(catenary),
     ]
     return Table("Line", ("", "value"), rows)
+
+
+def _arms(catenary: Catenary) -> str:
+    """Each kind of steady arm once."""
+    kinds = dict.fromkeys(
+        f"links of {arm.length:g} m, {arm.mass_per_length:g} kg/m, clamp {arm.clamp_mass:g} kg"
+        if arm.length is not None
+        else f"springs of {arm.stiffness:g} N/m, {arm.mass:g} kg"
+        for support in catenary.supports[1:-1]
+        if (arm := support.steady_arm)
+    )
+    return "; ".join(kinds) or "none"
+
+
+def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
+    """What leaves the vertical plane, where anything does."""
+    rows = []
+    if np.any(catenary.staggers):
+        rows.append(("stagger", f"{_range(catenary.staggers)} m"))
+    radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
+    if radii:
+        rows.append(("curve radius", f"{_range(radii)} m in {len(radii)} spans"))
+    if catenary.contact_wire_spacing:
+        rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
+    if catenary.stitch_wire:
+        rows.append(("stitch wires", f"{catenary.stitch_wire.length:g} m long"))
+    return rows
 
 
 def _range(values: Any) -> str:
