@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shlex
 from collections.abc import Sequence
@@ -41,14 +42,30 @@ class InputFiles:
 
         options : of the command, besides layout and pantographs
         """
-        (folder.path / "layout.toml").write_bytes(self.layout)
-        words = ["catenary-fe", "run", "layout.toml"]
+        files, words = {"layout.toml": self.layout}, ["catenary-fe", "run", "layout.toml"]
         for number, given in enumerate(self.pantographs, start=1):
             name = f"pantograph_{number}.toml" if isinstance(given, bytes) else given
             if isinstance(given, bytes):
-                (folder.path / name).write_bytes(given)
+                files[name] = given
             words += ["--pantograph", name]
-        folder.json("inputs.json", {"command": shlex.join([*words, *options])} | recorded_inputs(run))
+        for name, content in files.items():
+            (folder.path / name).write_bytes(content)
+        sums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+        command = shlex.join([*words, *options])
+        folder.json("inputs.json", {"command": command, "files_sha256": sums} | recorded_inputs(run))
+
+
+def changed_files(folder: Path) -> list[str]:
+    """Names of the kept files that are not as the run found them; none where no record of them is left."""
+    try:
+        sums = dict(json.loads((folder / "inputs.json").read_text(encoding="utf-8"))["files_sha256"])
+    except (OSError, ValueError, TypeError, KeyError):
+        return []
+    return [
+        name
+        for name, before in sums.items()
+        if (folder / name).is_file() and hashlib.sha256((folder / name).read_bytes()).hexdigest() != before
+    ]
 
 
 def recorded_inputs(run: Run) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from catenary_fe.cli.folder import output_folder, run_in
+from catenary_fe.cli.inputs import changed_files
 from catenary_fe.cli.run import write_run
 from catenary_fe.cli.terminal import (
     json_option,
@@ -20,7 +21,6 @@ from catenary_fe.cli.terminal import (
     quiet_option,
 )
 from catenary_fe.results import Run
-from catenary_fe.system import Catenary, InputError, load_catenary
 
 INPUTS = ("layout.toml", "pantograph_*.toml", "inputs.json")
 TOLERANCE = 0.1  # [N] of mean and standard deviation
@@ -76,20 +76,9 @@ def _changes_since(run: Run, folder: Path) -> list[str]:
     for name, before in json.loads(run.data.attrs["versions"]).items():
         if version(name) != before:
             found.append(f"{name} is {version(name)} now; the run was computed with {before}")
-    layout = folder / "layout.toml"
-    if layout.is_file():
-        try:
-            same = _described(load_catenary(layout)) == _described(run.catenary)
-        except InputError:
-            same = False
-        if not same:
-            found.append(
-                f"{layout} was changed since the run, which is repeated as it was; to run the changed layout,"
-                " use catenary-fe run"
-            )
+    for name in changed_files(folder):
+        found.append(
+            f"{folder / name} was changed since the run, which is repeated as it was; to run what it says"
+            " now, use catenary-fe run"
+        )
     return found
-
-
-def _described(catenary: Catenary) -> str:
-    """Without the spans to evaluate, which the command may have named."""
-    return catenary.model_dump_json(exclude={"evaluated_spans"})

@@ -83,6 +83,7 @@ def test_rerun_says_what_changed(capsys, folder, layout_text, tmp_path):
     run = cf.load_run(folder / "run.nc")
     run.data["contact_force"] += 1.0
     (tmp_path / "layout.toml").write_text(layout_text.replace("tension = 20e3", "tension = 21e3"))
+    (tmp_path / "inputs.json").write_bytes((folder / "inputs.json").read_bytes())
     run.data.attrs["versions"] = run.data.attrs["versions"].replace('"exudyn": "1', '"exudyn": "0')
     run.save(tmp_path / "run.nc")
     code, out, err = call(capsys, "rerun", tmp_path)

@@ -8,8 +8,8 @@ from typing import Any
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity, Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError
-from catenary_fe.views import layout, run_waves
+from catenary_fe.system import InputError, Pantograph
+from catenary_fe.views import layout, plan, run_waves
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
 from catenary_fe.views.report.html import svg_address, template
@@ -81,6 +81,10 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
         "shape": svg_address(layout.plot_static_shape(shape)),
     }
+    if shape.catenary.is_spatial:
+        heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
+        width = {"head_width": heads[0].width} if heads else {}
+        pictures["plan"] = svg_address(plan.plot_plan(shape, **width))
     if elasticity:
         pictures["elasticity"] = svg_address(layout.plot_elasticity(elasticity))
     if waves:
