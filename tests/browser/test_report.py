@@ -85,6 +85,15 @@ def test_the_player_plays(browser, short_run):
     assert uplift == pytest.approx(contact.uplift[round(time / 0.02)], abs=1e-5)
 
 
+def test_the_player_says_its_scales(browser):
+    said = browser.find_element("id", "scale").text
+    assert "times larger than lengths, the motion about the static shape another 5 times." in said
+    browser.execute_script(
+        "const s = document.getElementById('magnified'); s.value = '1'; s.dispatchEvent(new Event('input'))"
+    )
+    assert browser.find_element("id", "scale").text.endswith("times larger than lengths.")
+
+
 def test_the_player_stops_at_the_end(browser):
     browser.execute_script("document.getElementById('slowed').value = '1'; player.seek(player.end - 0.05)")
     browser.find_element("id", "play").click()

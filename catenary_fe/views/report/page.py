@@ -8,7 +8,7 @@ from typing import Any
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity, Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError, Pantograph
+from catenary_fe.system import InputError, Panhead, Pantograph
 from catenary_fe.views import layout, plan, run_waves
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
@@ -83,8 +83,8 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
     }
     if shape.catenary.is_spatial:
         heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
-        width = {"head_width": heads[0].width} if heads else {}
-        pictures["plan"] = svg_address(plan.plot_plan(shape, **width))
+        head = heads[0] if heads else Panhead()
+        pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=head.width))
     if elasticity:
         pictures["elasticity"] = svg_address(layout.plot_elasticity(elasticity))
     if waves:

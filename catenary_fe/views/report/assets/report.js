@@ -164,7 +164,7 @@
       const lines = this.drawWires(c, X, Z, frame, a, b);
       this.drawPantographs(c, X, Z, F, frame, lines, a, b);
       c.restore();
-      this.say(frame);
+      this.say(frame, ((middle - 16) / (this.high - this.low)) / ((width - left - right) / (b - a)));
     }
 
     drawGrid(c, X, F, a, b, width, height, middle, left, right) {
@@ -269,12 +269,14 @@
       c.stroke();
     }
 
-    say(frame) {
+    say(frame, exaggeration) {
       $("time").value = frame;
       const forces = this.m.pantographs.map((p) => `${p.force[frame].toFixed(0)} N at ${p.x[frame].toFixed(0)} m`);
       const slack = this.m.droppers.slack.subarray(frame * this.m.droppers.x.length, (frame + 1) * this.m.droppers.x.length)
         .reduce((sum, v) => sum + v, 0);
       $("now").textContent = `t = ${this.m.time[frame].toFixed(2)} s: ${forces.join(", ")}; ${slack} droppers slack`;
+      $("scale").textContent = `Heights are drawn ${exaggeration.toFixed(0)} times larger than lengths`
+        + (+$("magnified").value > 1 ? `, the motion about the static shape another ${$("magnified").value} times.` : ".");
     }
   }
 
