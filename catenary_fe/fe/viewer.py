@@ -7,6 +7,7 @@ import os
 import sys
 from ctypes.util import find_library
 
+import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,7 +45,12 @@ def view_model(
     settings.nodes.show = False
     settings.markers.show = False
     settings.loads.show = False
-    if not container.renderer.Start():
+    settings.general.rendererStartupTimeout = 30_000  # ms, for a busy machine
+    try:
+        started = container.renderer.Start()
+    except exu.InternalError:
+        started = False
+    if not started:
         raise InputError("the viewer's window did not open; look at the graphics driver (OpenGL)")
     try:
         left, right = catenary.support_positions[[spans[0] - 1, spans[1]]]

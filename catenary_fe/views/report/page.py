@@ -79,7 +79,7 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
         "uplift": svg_address(run_pictures.plot_support_uplift(run)),
         "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
-        "shape": svg_address(layout.plot_static_shape(shape)),
+        "shape": svg_address(layout.plot_static_shape(shape, spans=run.evaluated_spans[:2])),
     }
     if shape.catenary.is_spatial:
         heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
