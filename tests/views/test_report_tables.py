@@ -3,7 +3,7 @@
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.views.report.tables import Table, _line_table, input_tables, slack_table
+from catenary_fe.views.report.tables import Table, _line_table, input_tables, schedule_table, slack_table
 
 
 def rows(table):
@@ -45,6 +45,24 @@ def test_slack_droppers(short_run):
     assert table.caption.startswith(f"{len(table.rows)} of 36")
     total = sum(float(row[2]) for row in table.rows)
     assert total == pytest.approx((forces <= 0).sum(), abs=len(table.rows))  # [ms], steps of 1 ms
+
+
+def test_schedule(short_shape):
+    table = schedule_table(short_shape, [3])
+    assert len(table.rows) == 9
+    lengths = [row.length_m for row in short_shape.dropper_schedule() if row.span == 3]
+    assert [float(row[2]) for row in table.rows] == pytest.approx(lengths, abs=5e-5)
+    assert len(table.columns) == 6  # all hang on the one messenger wire and hold the one contact wire
+
+
+def test_schedule_of_a_stitched_twin(reference_layout):
+    twin = cf.load_catenary(reference_layout.with_name("en50318_2018_ac_stitched.toml"))
+    five = twin.replace(spans=twin.spans[:5], supports=twin.supports[:6], evaluated_spans=(3,))
+    table = schedule_table(cf.find_form(five), [3])
+    assert table.columns[-1] == "hangs on"
+    hung = [row[-1] for row in table.rows]
+    assert hung[0] == hung[-1] == "stitch wire"
+    assert set(hung[1:-1]) == {"messenger wire"}
 
 
 def test_numbers_stand_right():

@@ -108,21 +108,27 @@ def slack_table(run: Run) -> Table:
 
 
 def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
-    """Dropper lengths of some spans, or of all."""
+    """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
     caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
+    schedule = [row for row in shape.dropper_schedule() if spans is None or row.span in spans]
+    columns = ["span", "at (m)", "length (m)", "installed (m)", "force (N)", "height error (mm)"]
     rows = [
-        (
+        [
             str(row.span),
             f"{row.position_m:g}",
             f"{row.length_m:.4f}",
             f"{row.installed_length_m:.4f}",
             f"{row.force_N:.1f}",
             f"{round(row.contact_wire_height_error_mm, 2) + 0.0:.2f}",
-        )
-        for row in shape.dropper_schedule()
-        if spans is None or row.span in spans
+        ]
+        for row in schedule
     ]
-    columns = ("span", "at (m)", "length (m)", "installed (m)", "force (N)", "height error (mm)")
+    for name, text in (("hangs on", "hangs_on"), ("holds contact wire", "contact_wire")):
+        values = [str(getattr(row, text)) for row in schedule]
+        if len(set(values)) > 1:
+            columns.append(name)
+            for cells, value in zip(rows, values, strict=True):
+                cells.append(value)
     return Table(f"Dropper schedule, {caption}", columns, rows)
 
 
