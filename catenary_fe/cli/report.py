@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import progress_bar, quiet_option, working
-from catenary_fe.results import Run
-from catenary_fe.system import InputError
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.system import InputError, PowerSystem
 
 _POINTS_A_SPAN = 20  # of the elasticity, besides droppers and supports
 
@@ -29,8 +29,16 @@ _POINTS_A_SPAN = 20  # of the elasticity, besides droppers and supports
     type=click.Choice(["causal", "zero-phase"]),
     help="Unset: as in the run's summary.",
 )
+@click.option(
+    "--criteria",
+    "system",
+    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
+    help="Whose limits judge the run; unset: as in the run's summary, or AC.",
+)
 @quiet_option
-def report(folder: str, output: str | None, filter_kind: Any, quiet: bool) -> None:
+def report(
+    folder: str, output: str | None, filter_kind: Any, system: PowerSystem | None, quiet: bool
+) -> None:
     """Write a report of the run in FOLDER: one HTML page that needs no other file and no network."""
     from catenary_fe.analysis import elasticity
     from catenary_fe.analysis.repeat import shape_of
@@ -45,7 +53,14 @@ def report(folder: str, output: str | None, filter_kind: Any, quiet: bool) -> No
             shape, spans=run.evaluated_spans[:2], points_per_span=_POINTS_A_SPAN, progress=progress
         )
     with working("pictures", not quiet):
-        page = report_page(run, shape, curve, filter=filter_kind or _filter_of(place, run))
+        said = _summary(place)
+        page = report_page(
+            run,
+            shape,
+            curve,
+            system=system or _known(said.get("criteria_system"), get_args(PowerSystem)) or "AC",
+            filter=filter_kind or _known(said.get("filter"), get_args(FilterKind)) or "causal",
+        )
     try:
         target.write_text(page, encoding="utf-8")
     except OSError as error:
@@ -54,11 +69,14 @@ def report(folder: str, output: str | None, filter_kind: Any, quiet: bool) -> No
         click.echo(f"{target}: {target.stat().st_size / 1e6:.1f} MB")
 
 
-def _filter_of(folder: Path, run: Run) -> Any:
-    """The filter that the run's summary was made with."""
+def _summary(folder: Path) -> dict[str, Any]:
+    """The run's summary, where it is there."""
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return "causal"
-    found = summary.get("filter") if isinstance(summary, dict) else None
-    return found if found in ("causal", "zero-phase") else "causal"
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _known(value: Any, choices: tuple[str, ...]) -> Any:
+    return value if value in choices else None

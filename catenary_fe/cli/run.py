@@ -155,6 +155,7 @@ def run(
         summary = result.summary(filter=filter_kind)
         rows = judged(shape, result, system, filter_kind, quiet) if system else []
         if system:
+            summary["criteria_system"] = system
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
             with working("pictures", not quiet):

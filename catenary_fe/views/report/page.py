@@ -6,9 +6,9 @@ import json
 from typing import Any
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.results import Elasticity, Run
+from catenary_fe.results import Elasticity, Run, criteria_rows
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError, Panhead, Pantograph
+from catenary_fe.system import InputError, Panhead, Pantograph, PowerSystem
 from catenary_fe.views import layout, plan, run_waves
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
@@ -18,12 +18,18 @@ from catenary_fe.views.style import new_axes
 
 
 def report_page(
-    run: Run, shape: Shape, elasticity: Elasticity | None = None, *, filter: FilterKind = "causal"
+    run: Run,
+    shape: Shape,
+    elasticity: Elasticity | None = None,
+    *,
+    system: PowerSystem = "AC",
+    filter: FilterKind = "causal",
 ) -> str:
     """HTML of a run's report, complete in itself.
 
     shape : the static shape that the run started from
     elasticity : of the line; unset: the report shows none
+    system : whose limits the run is judged by
     filter : of the contact force's statistics
 
     The player and the picture of the waves are left out where the run stored no wire shapes.
@@ -32,6 +38,8 @@ def report_page(
         motion = series.motion(run)
     except InputError:
         motion = None
+    non_uniformity = elasticity.non_uniformity if elasticity else None
+    rows = criteria_rows(run, system, non_uniformity=non_uniformity, filter=filter)
     spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
@@ -39,7 +47,8 @@ def report_page(
         "lead": _lead(run),
         "versions": json.loads(run.data.attrs["versions"]),
         "keys": tables.key_figures(run, filter),
-        "criteria": None,
+        "criteria": tables.criteria_table(rows, system),
+        "verdict": tables.criteria_in_words(rows),
         "warnings": run.warnings,
         "checks": tables.checks_table(run),
         "motion": motion is not None,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.results import Run
+from catenary_fe.results import Criterion, Run, labels, missed
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
 
@@ -64,6 +64,25 @@ def statistics_table(run: Run, filter: FilterKind) -> Table:
     caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
     names = [s.pantograph for s in found]
     return Table(caption, ("", *names), [(name, *map(text, found)) for name, text in rows])
+
+
+def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
+    """A run's figures against the limits of its system, each with what the limit rests on."""
+    cells = [
+        (label, row.value_text, row.limit_text, row.verdict, row.source)
+        for label, row in zip(labels(rows), rows, strict=True)
+    ]
+    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
+    return Table(f"Limits of {system}", columns, cells)
+
+
+def criteria_in_words(rows: Sequence[Criterion]) -> str:
+    """One sentence that says whether the run is good by its criteria."""
+    judged, misses = [row for row in rows if row.passed is not None], missed(rows)
+    if not misses:
+        return f"All {len(judged)} criteria with a known limit are met."
+    names = ", ".join(dict.fromkeys(row.name for row in misses))
+    return f"{len(misses)} of {len(judged)} criteria are missed: {names}."
 
 
 def checks_table(run: Run) -> Table:
