@@ -179,7 +179,8 @@ def test_report(capsys, folder):
     (folder / "report.html").unlink()
     assert code == 0
     assert "report.html: " in out
-    for text in ("Checks and warnings", "mine", "EN 50318:2002 reference model", "Dropper schedule",
+    for text in ("Checks and warnings", "Limits of AC", ">0.3 of the mean force (secondary source)<",
+                 "mine", "EN 50318:2002 reference model", "Dropper schedule",
                  "secondary source", "causal low-pass", "Permission is hereby granted"):  # fmt: skip
         assert text in page
     summary = json.loads((folder / "summary.json").read_text())
@@ -206,6 +207,24 @@ def test_report_without_wire_shapes_and_masses(capsys, folder, tmp_path):
     assert "100 N, falling by 20 N/m" in page
     assert 'id="stage"' not in page
     assert 'id="waves"' not in page
+
+
+def test_a_report_judges_by_the_system_that_the_run_was_judged_by(capsys, folder, tmp_path):
+    from catenary_fe.results import criteria_rows, missed
+
+    run = cf.load_run(folder / "run.nc")
+    run.data["contact_force"] += 200.0
+    run.save(tmp_path / "run.nc")
+    (tmp_path / "summary.json").write_text('{"criteria_system": "DC 3 kV", "filter": "nonsense"}')
+    assert call(capsys, "report", tmp_path)[0] == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    misses = missed(criteria_rows(run, "DC 3 kV"))
+    assert misses
+    assert "Limits of DC 3 kV" in page
+    assert page.count('<td class="missed">missed</td>') == len(misses)
+    assert f"{len(misses)} of" in page
+    assert call(capsys, "report", tmp_path, "--criteria", "ac")[0] == 0
+    assert "Limits of AC" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_a_report_that_cannot_be_written(capsys, folder, tmp_path):
