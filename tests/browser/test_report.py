@@ -2,6 +2,7 @@
 
 import base64
 import json
+import re
 
 import pytest
 
@@ -74,8 +75,9 @@ def test_the_player_plays(browser, short_run):
     at = round(time / short_run.step)
     force = short_run.filtered_contact_force()[0, at]
     slack = int((short_run.data["dropper_force"].values[:, at] <= 0).sum())
-    assert f"t = {time:.2f} s: {force:.0f} N at {short_run.data['position'].values[0, at]:.0f} m" in said
-    assert f"{slack} droppers slack" in said
+    numbers = [float(n) for n in re.findall(r"\d+\.?\d*", said)]
+    x = short_run.data["position"].values[0, at]
+    assert numbers == pytest.approx([time, force, x, slack], abs=0.6), said  # whole newtons and metres
     uplift = browser.execute_script(
         "const w = player.m.wires[0], n = w.x.length, f = arguments[0];"
         "return Array.from(w.rows.subarray(f * n, (f + 1) * n), (v) => v * w.unit)",
