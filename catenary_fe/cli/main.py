@@ -12,6 +12,7 @@ from catenary_fe.cli.modes import modes
 from catenary_fe.cli.paper import paper
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
+from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.validate import validate
 from catenary_fe.system import CatenaryError
 
@@ -34,7 +35,7 @@ def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, paper, validate, schema):
+for command in (info, form, static, modes, run, sweep, paper, validate, schema):
     commands.add_command(command)
 
 

@@ -6,6 +6,7 @@ from catenary_fe.views.modes import plot_mode, plot_spectrum
 from catenary_fe.views.plan import plot_plan
 from catenary_fe.views.run import plot_contact_force, plot_dropper_forces, plot_support_uplift
 from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surface
+from catenary_fe.views.sweep import plot_sweep_deviation, plot_sweep_forces, plot_sweep_uplift
 
 __all__ = [
     "plot_contact_force",
@@ -21,4 +22,7 @@ __all__ = [
     "plot_static_shape",
     "plot_support_uplift",
     "plot_surface",
+    "plot_sweep_deviation",
+    "plot_sweep_forces",
+    "plot_sweep_uplift",
 ]
