@@ -22,7 +22,7 @@ from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, CatenaryError
+from catenary_fe.system import AnyPantograph, CatenaryError, SolverError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -83,14 +83,19 @@ class LinearisedCatenary:
         progress : called with the share done, 0 to 1
         """
         results: list[Run | CatenaryError | None] = [None] * len(cases)
-        jobs = [self._job(case, number) for number, case in enumerate(cases)]
+        jobs = []
+        for number, case in enumerate(cases):
+            try:
+                jobs.append(self._job(case, number))
+            except CatenaryError as error:
+                results[number] = error
         waiting = sorted(jobs, key=lambda job: -job.steps)  # long ones first: the lanes end together
         if not waiting:
-            return []
+            return [r for r in results if r is not None]
         sizes = self._sizes(jobs)
         lanes = Lanes(self._setup, sizes, most_lanes(self._setup, sizes, len(jobs)), self._every)
         active: dict[int, _Job] = {}
-        done = 0
+        done = len(cases) - len(jobs)
         while waiting or active:
             for lane in lanes.free():
                 job = active.pop(lane, None)
@@ -103,8 +108,10 @@ class LinearisedCatenary:
                         done += 1
                 while waiting and lane not in active:
                     job = waiting.pop(0)
-                    if error := self._begin(job, lanes, lane):
-                        results[job.number] = error
+                    failure = self._begin(job, lanes, lane)
+                    if failure:
+                        results[job.number] = failure
+                        done += 1
                     else:
                         active[lane] = job
             if active:
@@ -153,6 +160,11 @@ class LinearisedCatenary:
         case = job.case
         assert job.start is not None
         journey = lanes.journey(lane, job.start, job.steps, self._shape)
+        if not np.isfinite(journey.contact_force).all():
+            return SolverError(
+                f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite; look for"
+                " stiffnesses far from usual values, or use a smaller time step"
+            )
         warnings = [*case.warnings, *_doubts(journey.time, *lanes.doubts(lane, job.steps))]
         run = make_run(
             self._shape, case.pantographs, job.uplifts.uplifts, case.speed, self._time, journey, warnings,

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.analysis.checks import check_speed, run_warnings
+from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.linear_arrays import LANES
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.simulate import Method, plan_run, simulate
@@ -248,6 +248,8 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
         try:
             check_speed(case.speed)
             plan = plan_run(shape, len(case.pantographs), case.positions or None)
+            first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
+            check_heads(shape, case.pantographs, first, last)
             warnings = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
             good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, warnings))
             records.append({})

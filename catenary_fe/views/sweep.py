@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.system import target_mean_force
+from catenary_fe.system.current_collection import DEVIATION_SHARE
 from catenary_fe.views.style import finish, headroom, new_axes
 
 Rows = Sequence[Mapping[str, Any]]
 _COLOURS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3", "#8a6d1f", "#2a8f8f", "#a33b5e", "#5a5a5a")
-_LARGEST_DEVIATION = 0.3  # of the mean force, EN 50367 (secondary source)
 _CRITERION: dict[str, Any] = {"color": "#222222", "linewidth": 1.1}
 
 
@@ -43,13 +43,20 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
 
 
 def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
-    """Standard deviation against ``x`` with the largest one that is allowed, 0.3 of the mean force."""
+    """Standard deviation against ``x`` with the largest one that is allowed, a share of the mean force."""
     ax = new_axes(ax, (10.0, 4.6))
     for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
         at = _column(curve, x)
         ax.plot(at, _column(curve, "std_N"), "o-", color=colour, markersize=4, label=f"{name}σ")
-        most = _LARGEST_DEVIATION * _column(curve, "mean_N")
-        ax.plot(at, most, "--", color=colour, linewidth=1.1, label=f"{name}0.3 of the mean (largest allowed)")
+        most = DEVIATION_SHARE * _column(curve, "mean_N")
+        ax.plot(
+            at,
+            most,
+            "--",
+            color=colour,
+            linewidth=1.1,
+            label=f"{name}{DEVIATION_SHARE:g} of the mean, the most allowed",
+        )
     ax.set_ylim(bottom=0.0)
     return _finished(ax, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
 
