@@ -32,6 +32,7 @@ def make_run(
     time: TimeSettings,
     journey: Journey,
     warnings: Sequence[str],
+    method: str = "nonlinear",
 ) -> Run:
     """Label a journey's histories and note where they come from."""
     import xarray as xr
@@ -74,7 +75,7 @@ def make_run(
             _wire_names(shape), journey.wire_x, journey.wire_z, shape.wires, strict=True
         ):
             _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
-    attributes = _provenance(shape, pantographs, speed, time)
+    attributes = _provenance(shape, pantographs, speed, time, method)
     attributes["warnings"] = json.dumps(list(warnings))
     return Run(xr.Dataset(variables, coordinates, attributes))
 
@@ -124,17 +125,17 @@ def _unique(names: Sequence[str]) -> list[str]:
 
 
 def _provenance(
-    shape: Shape, pantographs: Sequence[AnyPantograph], speed: float, time: TimeSettings
+    shape: Shape, pantographs: Sequence[AnyPantograph], speed: float, time: TimeSettings, method: str
 ) -> dict[str, Any]:
     catenary = shape.catenary.model_dump_json()
     records = json.dumps([p.model_dump(mode="json") for p in pantographs])
     settings = json.dumps({"mesh": asdict(shape.mesh_settings), "time": asdict(time)})
-    inputs = "\n".join([catenary, records, settings, repr(speed)])
+    inputs = "\n".join([catenary, records, settings, repr(speed), method])
     return {
         "format": FORMAT,
         "title": shape.catenary.name,
         "source": shape.catenary.source,
-        "method": "nonlinear",
+        "method": method,
         "speed": speed,
         "evaluated_spans": json.dumps(shape.catenary.spans_to_evaluate),
         "catenary": catenary,

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
-from catenary_fe.analysis.simulate import simulate
+from catenary_fe.analysis.simulate import Method, simulate
 from catenary_fe.equilibrium import Shape, find_form
 from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.fe.solver_settings import TimeSettings
@@ -39,7 +40,7 @@ class Repetition:
 def repeat(run: Run, progress: Callable[[float], None] | None = None) -> Repetition:
     """Run again what a run recorded: layout, pantographs, speed, starts, mesh and time settings.
 
-    Raises InputError for a run of another method or a record that this version does not understand.
+    Raises InputError for a record that this version does not understand.
     """
     shape, again = _again(run, progress)
     if again.time.size != run.time.size:
@@ -64,8 +65,6 @@ def shape_of(run: Run) -> Shape:
 
 
 def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, Run]:
-    if run.method != "nonlinear":
-        raise InputError(f"method {run.method!r}: only nonlinear runs can be repeated")
     shape, stored = shape_of(run), run.data.get("wire_time")
     again = simulate(
         shape,
@@ -75,6 +74,7 @@ def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, R
         time=_settings(run)[1],
         store_wire=float(stored[1] - stored[0]) if stored is not None and stored.size > 1 else None,
         progress=progress,
+        method=cast(Method, run.method),  # simulate refuses one that it does not know
     )
     return shape, again
 

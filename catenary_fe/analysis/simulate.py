@@ -6,22 +6,25 @@ import logging
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
+from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, InputError, Pantograph, SolverError
-from catenary_fe.system.current_collection import MEAN_FORCE_TOLERANCE
+from catenary_fe.system import AnyPantograph, CatenaryError, InputError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-_MEAN_FORCE_RUNS = 5
+Method = Literal["nonlinear", "linearised"]
+
 _log = logging.getLogger(__name__)
 
 
@@ -46,6 +49,7 @@ def simulate(
     time: TimeSettings | None = None,
     store_wire: float | None = None,
     progress: Progress | None = None,
+    method: Method = "nonlinear",
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
@@ -58,6 +62,8 @@ def simulate(
     time : settings of the time integration
     store_wire : [s] between stored shapes of the whole wires; unset: none
     progress : called with the share done, 0 to 1
+    method : "linearised" about the static state, many times faster: slack droppers and contact are solved in
+        each step, large motions are not there. It warns where they matter.
 
     Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
     the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
@@ -66,6 +72,8 @@ def simulate(
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
     check_speed(speed)
+    if method not in get_args(Method):
+        raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")
     time = time or TimeSettings()
     if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
@@ -74,37 +82,21 @@ def simulate(
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     for warning in warnings:
         _log.warning(warning)
-    uplifts = _uplifts(pantographs, speed)
-    targets = [p.target_mean_force(speed) for p in pantographs]
-    for _ in range(_MEAN_FORCE_RUNS):
+    force = MeanForce(pantographs, speed)
+    if method == "linearised":
+        case = Case(pantographs, speed, plan.start, plan.distance, warnings)
+        (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
+        if isinstance(result, CatenaryError):
+            raise result
+        for warning in result.warnings[len(warnings) :]:
+            _log.warning(warning)
+        return result
+    while True:
         begin = clock.perf_counter()
-        run = _drive(shape, pantographs, uplifts, speed, plan, time, store_wire, progress, warnings)
+        run = _drive(shape, pantographs, force.uplifts, speed, plan, time, store_wire, progress, warnings)
         run = Run(run.data, clock.perf_counter() - begin)
-        if all(target is None for target in targets):
+        if force.reached(run):
             return run
-        means = np.array([s.mean for s in run.contact_force_statistics()])
-        goals = np.array([m if t is None else t for m, t in zip(means, targets, strict=True)])
-        if np.abs(means - goals).max() <= MEAN_FORCE_TOLERANCE:
-            return run
-        uplifts = uplifts * goals / means
-    raise SolverError(
-        f"mean contact force: after {_MEAN_FORCE_RUNS} runs the means are {np.round(means, 2).tolist()} N,"
-        f" not {np.round(goals, 2).tolist()} N; give an uplift_force instead of a mean_force"
-    )
-
-
-def _uplifts(pantographs: Sequence[AnyPantograph], speed: float) -> Floats:
-    """[N], shape (pantographs,): forces on the lowest masses, the air's included."""
-    uplifts = np.array([p.static_uplift(speed) for p in pantographs])
-    faults = [
-        f"{pantograph.name}: uplift and aerodynamic force add up to {uplift:.6g} N at {3.6 * speed:g} km/h:"
-        " must be above 0, or the head stays down; change uplift_force or aerodynamic_force"
-        for pantograph, uplift in zip(pantographs, uplifts, strict=True)
-        if isinstance(pantograph, Pantograph) and uplift <= 0
-    ]
-    if faults:
-        raise InputError(*faults)
-    return uplifts
 
 
 def _drive(

@@ -18,6 +18,7 @@ from catenary_fe.cli.report import report
 from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
+from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
 from catenary_fe.cli.view import view
@@ -59,6 +60,7 @@ _SHORT_HELP = {
     static: "Elasticity along the line.",
     modes: "Eigenfrequencies and mode shapes.",
     run: "Run pantographs along a layout.",
+    sweep: "Many runs: speeds, pantographs, values of a layout.",
     report: "One HTML page of a run, to read and hand on.",
     compare: "Runs side by side: inputs, figures, traces.",
     film: "Film of a run, as GIF or MP4.",

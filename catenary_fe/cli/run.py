@@ -11,6 +11,7 @@ from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.inputs import InputFiles
+from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -48,30 +49,7 @@ Examples:
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
-class _ManyValues(click.Command):
-    """Lets ``--pantograph-at 110 10`` stand for the option given twice."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        spread: list[str] = []
-        listing = False
-        for argument in args:
-            if listing and _is_number(argument) and _is_number(spread[-1]):
-                spread += ["--pantograph-at", argument]
-                continue
-            listing = argument == "--pantograph-at" or (listing and _is_number(argument))
-            spread.append(argument)
-        return super().parse_args(ctx, spread)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-@click.command(cls=_ManyValues, epilog=EPILOG)
+@click.command(cls=ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
 @layout_argument
 @click.option(
     "--pantograph",
@@ -83,6 +61,13 @@ def _is_number(text: str) -> bool:
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
+@click.option(
+    "--method",
+    type=click.Choice(["nonlinear", "linearised"]),
+    default="nonlinear",
+    show_default=True,
+    help="Linearised: about the static state, many times faster.",
+)
 @click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
 @click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
 @click.option(
@@ -114,6 +99,7 @@ def run(
     names: tuple[str, ...],
     positions: tuple[float, ...],
     speed_kmh: float,
+    method: Any,
     time_step_ms: float,
     element_m: float | None,
     filter_kind: Any,
@@ -151,6 +137,7 @@ def run(
                 time=time,
                 store_wire=store_wire_ms / 1e3 if store_wire_ms else None,
                 progress=progress,
+                method=method,
             )
         summary = result.summary(filter=filter_kind)
         rows = judged(shape, result, system, filter_kind, quiet) if system else []

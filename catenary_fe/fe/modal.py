@@ -77,10 +77,10 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
     M, K = mass_matrix(mbs, wires), stiffness_matrix(mbs, wires)
     droppers = np.array([d.stiffness for d in catenary.droppers])
     D = catenary.damping.alpha * M + catenary.damping.beta * K
-    D = D + _droppers(model, dropper_damping(catenary), pulled=False) + _springs(model, "damping")
+    D = D + _droppers(model, dropper_damping(catenary), pulled=False) + spring_values(model, "damping")
     moves = np.repeat([1.0, 0.0], model.axes)
     M = M + _diagonal(np.outer(masses, moves).ravel())
-    K = K + _droppers(model, droppers) + _springs(model, "stiffness") + _links(model)
+    K = K + _droppers(model, droppers) + spring_values(model, "stiffness") + link_stiffness(model)
     T = transformation(model)
     M, K, D = (T.T @ matrix @ T for matrix in (M, K, D))
     return LinearSystem(M, K, D, T, model.node_width)
@@ -170,11 +170,13 @@ def _coordinate(mbs: exu.MainSystem, marker: int) -> int:
 
 def _objects(model: Model, kind: str) -> list[dict[str, Any]]:
     mbs = model.mbs
-    items = [mbs.GetObject(i) for i in range(mbs.systemData.NumberOfObjects())]
+    elements = {e for wire in model.wires for e in wire.elements}  # many, and slow to look at
+    numbers = [i for i in range(mbs.systemData.NumberOfObjects()) if i not in elements]
+    items = [mbs.GetObject(i) for i in numbers]
     return [item for item in items if item["objectType"] == kind]
 
 
-def _springs(model: Model, what: str) -> Any:
+def spring_values(model: Model, what: str) -> Any:
     """Stiffness or damping of steady arms and supports: vertical springs to the ground."""
     diagonal = np.zeros(model.mbs.systemData.ODE2Size())
     for item in _objects(model, "ConnectorCoordinateSpringDamper"):
@@ -211,7 +213,7 @@ def _droppers(model: Model, along: Floats, *, pulled: bool = True) -> Any:
     return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
 
 
-def _links(model: Model) -> Any:
+def link_stiffness(model: Model) -> Any:
     """Stiffness of steady arms that are links to the ground."""
     from scipy.sparse import coo_matrix
 

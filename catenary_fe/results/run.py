@@ -45,7 +45,7 @@ class Run:
 
     @property
     def method(self) -> str:
-        """How it was computed: 'nonlinear'."""
+        """How it was computed: 'nonlinear' or 'linearised'."""
         return str(self.data.attrs["method"])
 
     @property

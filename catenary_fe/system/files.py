@@ -231,6 +231,11 @@ def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str
     return ()
 
 
+def read_layout(path: str | Path) -> dict[str, Any]:
+    """A layout file as it is written, not checked yet. Raises InputError if it is no TOML file."""
+    return _read_toml(Path(path), "layout")
+
+
 def load_pantograph(name_or_path: str | Path) -> Pantograph:
     """A pantograph from a TOML file, or from the library by its name.
 

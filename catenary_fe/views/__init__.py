@@ -9,6 +9,7 @@ from catenary_fe.views.run import plot_contact_force, plot_dropper_forces, plot_
 from catenary_fe.views.run_waves import plot_run_waves
 from catenary_fe.views.space_time import plot_family, plot_space_time, plot_surface
 from catenary_fe.views.spectrum import plot_force_spectrum
+from catenary_fe.views.sweep import plot_sweep_deviation, plot_sweep_forces, plot_sweep_uplift
 
 __all__ = [
     "plot_contact_force",
@@ -27,5 +28,8 @@ __all__ = [
     "plot_static_shape",
     "plot_support_uplift",
     "plot_surface",
+    "plot_sweep_deviation",
+    "plot_sweep_forces",
+    "plot_sweep_uplift",
     "plot_uplift_comparison",
 ]

@@ -1,0 +1,141 @@
+"""Work of a linearised run's step that concerns all coordinates: residual, solution, prediction of the next.
+
+Generalised-α: with x the accelerations at the step's end, q = q* + b x and v = v* + g x, where q* and v* are
+known, and (M + g D + b K) x = f - D v* - K q*. Functions come for one lane and for ``LANES`` of them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from catenary_fe.analysis.compiled import compiled
+from catenary_fe.analysis.linear_arrays import Floats, Quads, Rows, Scheme, Unsigned, Wires
+
+
+@compiled
+def advance(scheme: Scheme, q: Any, v: Any, c: Any, x: Any) -> tuple[Any, Any, Any]:
+    """q*, v* and c of the next step."""
+    return (
+        q + scheme.h * v + scheme.qx * x + scheme.qc * c,
+        v + scheme.vx * x + scheme.vc * c,
+        scheme.cx * x + scheme.cc * c,
+    )
+
+
+@compiled
+def predict(scheme: Scheme, beta: float, wires: Wires) -> None:
+    """State of the next step in place; on flat arrays."""
+    q, v, c, x, w = wires
+    for i in range(x.size):  # two loops: the compiler cannot tell more arrays apart
+        q[i], v[i], c[i] = advance(scheme, q[i], v[i], c[i], x[i])
+    for i in range(x.size):
+        w[i] = q[i] + beta * v[i]
+
+
+@compiled
+def take_one(A: Quads, u: Floats, x: Floats) -> None:
+    """x = -A u"""
+    start, index, value, _ = A
+    for k in range(start.size - 1):
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        for m in range(start[k], start[k + 1]):
+            p, r = u[index[m]], value[m]
+            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
+        i = 4 * k
+        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
+
+
+@compiled
+def lower_one(L: Quads, x: Floats) -> None:
+    """Solve L y = x in place."""
+    start, index, value, inner = L
+    for k in range(start.size - 1):
+        i = 4 * k
+        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
+        for m in range(start[k], start[k + 1]):
+            p, r = x[index[m]], value[m]
+            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
+        t = inner[k]
+        b -= t[0] * a
+        c -= t[1] * a + t[2] * b
+        d -= t[3] * a + t[4] * b + t[5] * c
+        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
+
+
+@compiled
+def upper_one(U: Quads, inverse: Floats, x: Floats) -> None:
+    """Solve diag(1 / inverse) Lᵀ y = x in place."""
+    start, index, value, inner = U
+    groups = start.size - 1
+    for n in range(groups):
+        k = groups - 1 - n
+        i = 4 * k
+        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
+        a, b, c, d = a * inverse[i], b * inverse[i + 1], c * inverse[i + 2], d * inverse[i + 3]
+        for m in range(start[k], start[k + 1]):
+            p, r = x[index[m]], value[m]
+            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
+        t = inner[k]
+        c -= t[5] * d
+        b -= t[4] * d + t[3] * c
+        a -= t[2] * d + t[1] * c + t[0] * b
+        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
+
+
+@compiled
+def take_rows(A: Rows, rows: Unsigned, u: Floats, x: Floats) -> None:
+    """x -= A u for a matrix with few rows; shape (rows, lanes) or flat for one lane."""
+    start, index, value = A
+    lanes = u.shape[1]
+    for k in range(rows.size):
+        i = rows[k]
+        for m in range(start[k], start[k + 1]):
+            for c in range(lanes):
+                x[i, c] -= value[m] * u[index[m], c]
+
+
+# eight lanes are written out: so the compiler makes vectors of them
+
+
+@compiled
+def take_eight(A: Rows, u: Floats, x: Floats) -> None:
+    """x = -A u"""
+    start, index, value = A
+    for i in range(x.shape[0]):
+        a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for m in range(start[i], start[i + 1]):
+            k, p = value[m], u[index[m]]
+            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
+            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
+        r = x[i]
+        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
+
+
+@compiled
+def lower_eight(L: Rows, x: Floats) -> None:
+    """Solve L y = x in place."""
+    start, index, value = L
+    for i in range(x.shape[0]):
+        r = x[i]
+        a, b, c, d, e, f, g, h = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]
+        for m in range(start[i], start[i + 1]):
+            k, p = value[m], x[index[m]]
+            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
+            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
+        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
+
+
+@compiled
+def upper_eight(U: Rows, inverse: Floats, x: Floats) -> None:
+    """Solve diag(1 / inverse) Lᵀ y = x in place."""
+    start, index, value = U
+    for n in range(x.shape[0]):
+        i = x.shape[0] - 1 - n
+        r, v = x[i], inverse[i]
+        a, b, c, d = v * r[0], v * r[1], v * r[2], v * r[3]
+        e, f, g, h = v * r[4], v * r[5], v * r[6], v * r[7]
+        for m in range(start[i], start[i + 1]):
+            k, p = value[m], x[index[m]]
+            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
+            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
+        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h

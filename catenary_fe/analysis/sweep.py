@@ -1,0 +1,306 @@
+"""Sweeps: many runs, on all cores or an existing Dask cluster; finished cases are kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
+from catenary_fe.analysis.linear_arrays import LANES
+from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.simulate import Method, plan_run, simulate
+from catenary_fe.equilibrium import Shape, find_form
+from catenary_fe.fe.mesh import MeshSettings
+from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.results import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.system import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
+
+Progress = Callable[[int, int], None]
+Record = dict[str, Any]
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepSettings:
+    """What all cases of a sweep have in common."""
+
+    method: Method = "linearised"
+    mesh: MeshSettings = field(default_factory=MeshSettings)
+    time: TimeSettings = field(default_factory=TimeSettings)
+    filter: FilterKind = "causal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepCase:
+    """One run of a sweep.
+
+    values : what tells it from the others, by column of the table
+    positions : [m] of the pantographs at the start, empty for one near the first support
+    """
+
+    values: dict[str, Any]
+    catenary: Catenary
+    pantographs: tuple[AnyPantograph, ...]
+    speed: float
+    positions: tuple[float, ...] = ()
+
+    def key(self, settings: SweepSettings) -> str:
+        """A name that is the same only for the same inputs."""
+        inputs = [
+            self.catenary.model_dump_json(),
+            *(p.model_dump_json() for p in self.pantographs),
+            repr((self.speed, self.positions)),
+            json.dumps(asdict(settings), sort_keys=True),
+            version("catenary_fe"),
+        ]
+        return hashlib.sha256("\n".join(inputs).encode()).hexdigest()[:20]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BrokenCase:
+    """A run that cannot be described: its values break a rule."""
+
+    values: dict[str, Any]
+    error: CatenaryError
+
+
+def run_sweep(
+    cases: Sequence[SweepCase | BrokenCase],
+    settings: SweepSettings,
+    folder: str | Path,
+    *,
+    jobs: int = -1,
+    scheduler: str | None = None,
+    retry: bool = False,
+    progress: Progress | None = None,
+) -> list[Record]:
+    """Run all cases that the folder does not hold yet; one record a case, in the order of the cases.
+
+    A record has ``values``, and either ``summary`` (see :meth:`Run.summary`) or ``error``. Each is written
+    into ``folder/cases`` as soon as it is there: a sweep that was stopped goes on from where it was.
+
+    jobs : number of processes, -1: one a core
+    scheduler : address of a Dask cluster to run on instead
+    retry : run cases again that failed
+    progress : called with the numbers of cases done and of all cases
+
+    Raises InputError if the folder cannot be written or the cluster is not there, SolverError if a worker
+    process dies.
+    """
+    store = _Store(Path(folder) / "cases", settings)
+    records = [
+        _failed(case.error) if isinstance(case, BrokenCase) else store.read(case, retry) for case in cases
+    ]
+    missing = [i for i, record in enumerate(records) if record is None]
+    done = len(cases) - len(missing)
+    if done:
+        _log.info("%d of %d cases are there already", done, len(cases))
+    to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
+    for numbers, found in _spread(
+        _tasks(to_run, settings, _workers(jobs)), to_run, settings, jobs, scheduler
+    ):
+        for i, record in zip(numbers, found, strict=True):
+            records[i] = record
+            store.write(to_run[i], record)
+        done += len(numbers)
+        if progress:
+            progress(done, len(cases))
+    return [record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record]
+
+
+class _Store:
+    """Records of finished cases, one file each."""
+
+    def __init__(self, folder: Path, settings: SweepSettings) -> None:
+        self._folder, self._settings = folder, settings
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from None
+
+    def _path(self, case: SweepCase) -> Path:
+        return self._folder / f"{case.key(self._settings)}.json"
+
+    def read(self, case: SweepCase, retry: bool) -> Record | None:
+        try:
+            record: Record = json.loads(self._path(case).read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError):
+            return None  # a damaged file: run the case again
+        if not isinstance(record, dict) or ("summary" in record) == ("error" in record):
+            return None
+        return None if retry and "error" in record else record
+
+    def write(self, case: SweepCase, record: Record) -> None:
+        path = self._path(case)
+        aside = path.with_suffix(".part")
+        try:
+            aside.write_text(json.dumps(record, allow_nan=False, indent=1), encoding="utf-8")
+            os.replace(aside, path)
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+def _workers(jobs: int) -> int:
+    return jobs if jobs > 0 else os.cpu_count() or 1
+
+
+def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
+    """Numbers of cases to run together: of one catenary, of similar length, no more than fill the lanes."""
+    if settings.method != "linearised":
+        return [[i] for i in cases]
+    groups: dict[Catenary, list[int]] = {}
+    for i, case in cases.items():
+        groups.setdefault(case.catenary, []).append(i)
+    tasks = []
+    for group in groups.values():
+        group.sort(key=lambda i: cases[i].speed)
+        parts = max(int(np.ceil(len(group) / LANES)), min(workers // len(groups), len(group)))
+        tasks += [part.tolist() for part in np.array_split(group, parts)]
+    return tasks
+
+
+def _spread(
+    tasks: Sequence[list[int]],
+    cases: Mapping[int, SweepCase],
+    settings: SweepSettings,
+    jobs: int,
+    scheduler: str | None,
+) -> Iterator[tuple[list[int], list[Record]]]:
+    """Results of the tasks as they come."""
+    from joblib import Parallel, delayed
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    if not tasks:
+        return
+    with _engine(scheduler):
+        parallel = Parallel(
+            n_jobs=-1 if scheduler else min(_workers(jobs), len(tasks)),
+            return_as="generator_unordered",
+            batch_size=1,
+            pre_dispatch="all",
+        )
+        work = (delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
+        try:
+            yield from parallel(work)
+        except TerminatedWorkerError:
+            raise SolverError(
+                "a worker process was killed, perhaps for lack of memory; finished cases are kept: start the"
+                " sweep again, with fewer jobs"
+            ) from None
+
+
+@contextmanager
+def _engine(scheduler: str | None) -> Iterator[None]:
+    if scheduler is None:
+        yield
+        return
+    import joblib
+
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise InputError(
+            f"scheduler {scheduler}: Dask is not installed here; install catenary_fe with the extra 'cluster'"
+        ) from None
+    try:
+        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(f"scheduler {scheduler}: no Dask cluster answers there ({error})") from None
+    with client, joblib.parallel_config("dask"):
+        yield
+
+
+def _run_task(
+    numbers: list[int], cases: Sequence[SweepCase], settings: SweepSettings
+) -> tuple[list[int], list[Record]]:
+    """Run cases of one catenary; what fails is recorded, not raised."""
+    logging.getLogger("catenary_fe").setLevel(logging.ERROR)  # warnings are in the records
+    try:
+        if settings.method == "linearised":
+            return numbers, _run_together(cases, settings)
+        return numbers, [_run_alone(case, settings) for case in cases]
+    except CatenaryError as error:
+        return numbers, [_failed(error)] * len(numbers)
+    except Exception as error:  # one broken case must not stop the others
+        text = f"unexpected {type(error).__name__}: {error}; please report it"
+        return numbers, [_failed(SolverError(text))] * len(numbers)
+
+
+def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
+    shape, line = _linearised(cases[0].catenary, settings.mesh, settings.time)
+    records: list[Record] = []
+    good: list[Case] = []
+    for case in cases:
+        try:
+            check_speed(case.speed)
+            plan = plan_run(shape, len(case.pantographs), case.positions or None)
+            first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
+            check_heads(shape, case.pantographs, first, last)
+            warnings = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
+            good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, warnings))
+            records.append({})
+        except CatenaryError as error:
+            records.append(_failed(error))
+    results = iter(line.run(good))
+    return [record or _record(next(results), settings) for record in records]
+
+
+def _run_alone(case: SweepCase, settings: SweepSettings) -> Record:
+    try:
+        shape = _shape(case.catenary, settings.mesh)
+        run = simulate(
+            shape,
+            case.pantographs,
+            speed=case.speed,
+            positions=case.positions or None,
+            time=settings.time,
+            method=settings.method,
+        )
+    except CatenaryError as error:
+        return _failed(error)
+    return _record(run, settings)
+
+
+def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
+    if isinstance(result, CatenaryError):
+        return _failed(result)
+    summary = result.summary(filter=settings.filter)
+    for key in ("wall_s", "real_time_factor"):
+        del summary[key]  # a table is the same whenever and wherever it was computed
+    for i, pantograph in enumerate(summary["pantographs"]):
+        pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
+    force = result.data["dropper_force"].values
+    summary["slack_droppers"] = int((force <= 0).any(axis=1).sum())
+    summary["largest_dropper_force_N"] = float(force.max(initial=0.0))
+    return {"summary": summary}
+
+
+def _failed(error: CatenaryError) -> Record:
+    return {"error": str(error), "exit_code": error.exit_code}
+
+
+@lru_cache(maxsize=2)
+def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
+    return find_form(catenary, mesh)
+
+
+@lru_cache(maxsize=2)
+def _linearised(
+    catenary: Catenary, mesh: MeshSettings, time: TimeSettings
+) -> tuple[Shape, LinearisedCatenary]:
+    shape = _shape(catenary, mesh)
+    return shape, LinearisedCatenary(shape, time)

@@ -1,0 +1,281 @@
+"""Many runs at once: speeds, pantographs, and any values of the layout."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+from catenary_fe.cli.folder import output_folder
+from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.terminal import (
+    json_option,
+    layout_argument,
+    print_json,
+    print_table,
+    progress_bar,
+    quiet_option,
+    spans_option,
+)
+from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.variation import PANTOGRAPH, Variable, varied_pantograph
+
+if TYPE_CHECKING:
+    from catenary_fe.analysis.sweep import BrokenCase, Record, SweepCase
+
+EPILOG = """\b
+Examples:
+  catenary-fe sweep LAYOUT --speed-kmh 200:320:10 --pantograph "EN 50318:2002" -o sweep
+  catenary-fe sweep LAYOUT --speed-kmh 250 275 300 --pantograph DSA380 "SSS400+" -o sweep
+  catenary-fe sweep LAYOUT --speed-kmh 300 --pantograph DSA380 --vary contact_wire.tension=20e3:30e3:6 \\
+      --vary span.*.pre_sag=0:0.03:4 -o sweep
+
+\b
+--speed-kmh takes speeds, or first:last:step. --vary takes PLACE=first:last:count or PLACE=a,b,c; a place
+is written as in the layout file with dots between tables, numbers (from 1) or * for members of a list;
+values of the pantograph start with 'pantograph.'. All combinations are run.
+A sweep that was stopped goes on when it is started again with the same folder."""
+
+_MOST = 100_000
+_FIGURES = (
+    ("mean_N", "mean N"), ("std_N", "σ N"), ("statistical_min_N", "stat. min N"),
+    ("statistical_max_N", "stat. max N"), ("min_N", "min N"), ("max_N", "max N"),
+    ("contact_loss_percent", "loss %"), ("max_support_uplift_mm", "uplift mm"),
+)  # fmt: skip
+
+
+@click.command(
+    cls=ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
+)
+@layout_argument
+@click.option("--speed-kmh", "speeds", multiple=True, required=True, help="Speeds, or first:last:step.")
+@click.option(
+    "--pantograph", "names", multiple=True, required=True, help="Names in the library, or TOML files."
+)
+@click.option(
+    "--pantograph-at", "positions", multiple=True, type=float,
+    help="Positions in m at the start: each case runs one pantograph at each.",
+)  # fmt: skip
+@click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
+@click.option(
+    "--method", type=click.Choice(["linearised", "nonlinear"]), default="linearised", show_default=True
+)
+@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
+@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
+@spans_option
+@click.option("--jobs", type=int, default=-1, help="Number of processes; unset: one a core.")
+@click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
+@click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
+@click.option(
+    "-o", "--output", required=True, type=click.Path(), metavar="DIR", help="Folder for table and pictures."
+)
+@json_option
+@quiet_option
+def sweep(
+    layout: str,
+    speeds: tuple[str, ...],
+    names: tuple[str, ...],
+    positions: tuple[float, ...],
+    variations: tuple[str, ...],
+    method: Any,
+    time_step_ms: float,
+    element_m: float | None,
+    spans: list[int] | None,
+    jobs: int,
+    scheduler: str | None,
+    retry_failed: bool,
+    output: str,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
+    from catenary_fe.analysis.sweep import SweepSettings, run_sweep
+    from catenary_fe.fe import MeshSettings, TimeSettings
+
+    axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
+    axes |= dict(_variation(text) for text in variations)
+    count = math.prod(len(values) for values in axes.values())
+    if count > _MOST:
+        raise InputError(f"sweep: {count} cases are more than {_MOST}; take fewer values")
+    settings = SweepSettings(
+        method=method,
+        mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
+        time=TimeSettings(step=time_step_ms / 1e3),
+    )
+    cases = _cases(layout, axes, positions, spans)
+    with progress_bar(f"{count} cases", not quiet) as progress, _kept(output):
+        records = run_sweep(
+            cases,
+            settings,
+            output,
+            jobs=jobs,
+            scheduler=scheduler,
+            retry=retry_failed,
+            progress=(lambda done, all_: progress(done / all_)) if progress else None,
+        )
+    rows = [row for record in records for row in _rows(record)]
+    _write(output, rows, axes)
+    if as_json:
+        print_json(rows)
+    elif not quiet:
+        _print(rows, axes)
+        click.echo(f"table and pictures in {output}")
+    failed = [record for record in records if "error" in record]
+    for record in failed:
+        said = ", ".join(f"{name} = {value}" for name, value in record["values"].items())
+        click.echo(f"failed: {said}: {record['error']}", err=True)
+    if failed and len(failed) == len(records):
+        raise click.exceptions.Exit(failed[0]["exit_code"])
+
+
+@contextmanager
+def _kept(output: str) -> Iterator[None]:
+    """Say what a stopped sweep leaves behind."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        click.echo(f"stopped: finished cases are kept in {output}; start again to go on", err=True)
+        raise
+
+
+def _speeds(texts: Sequence[str]) -> list[float]:
+    values: list[float] = []
+    for text in texts:
+        parts = [_number(part, "--speed-kmh", text) for part in text.split(":")]
+        if len(parts) == 1:
+            values += parts
+            continue
+        if len(parts) != 3 or parts[2] <= 0 or parts[1] < parts[0]:
+            raise click.BadParameter(f"--speed-kmh {text}: must be a speed or first:last:step, rising")
+        count = int(np.floor((parts[1] - parts[0]) / parts[2] + 1e-9)) + 1
+        values += [round(parts[0] + i * parts[2], 9) for i in range(count)]
+    return list(dict.fromkeys(values))
+
+
+def _variation(text: str) -> tuple[str, list[Any]]:
+    place, equals, values = text.partition("=")
+    if not (place and equals and values):
+        raise click.BadParameter(f"--vary {text}: must be PLACE=first:last:count or PLACE=a,b,c")
+    if values.count(":") == 2:
+        first, last, count = (_number(part, "--vary", text) for part in values.split(":"))
+        if count != int(count) or count < 1:
+            raise click.BadParameter(f"--vary {text}: the count must be a whole number of at least 1")
+        return place, [float(f"{v:.12g}") for v in np.linspace(first, last, int(count))]
+    return place, [_value(part) for part in values.split(",")]
+
+
+def _value(text: str) -> Any:
+    """A number, true, false, or a text."""
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _number(text: str, option: str, whole: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        raise click.BadParameter(f"{option} {whole}: {text!r} is not a number")
+    return value
+
+
+def _cases(
+    layout: str, axes: dict[str, list[Any]], positions: tuple[float, ...], spans: list[int] | None
+) -> list[SweepCase | BrokenCase]:
+    """All combinations. Raises the first one's InputError if none of them can be run."""
+    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
+
+    variable = Variable(layout)
+
+    @cache
+    def catenary(varied: tuple[tuple[str, Any], ...]) -> Catenary:
+        made = variable.catenary(dict(varied))
+        return made.replace(evaluated_spans=tuple(spans)) if spans else made
+
+    pantograph = cache(lambda name, varied: varied_pantograph(name, dict(varied)))
+    cases: list[SweepCase | BrokenCase] = []
+    for combination in itertools.product(*axes.values()):
+        values = dict(zip(axes, combination, strict=True))
+        varied = [item for item in values.items() if item[0] not in ("speed_kmh", "pantograph")]
+        try:
+            line = catenary(tuple(item for item in varied if not item[0].startswith(PANTOGRAPH)))
+            of_head = tuple(item for item in varied if item[0].startswith(PANTOGRAPH))
+            head = pantograph(values["pantograph"], of_head)
+        except InputError as error:
+            cases.append(BrokenCase(values=values, error=error))
+            continue
+        heads, speed = (head,) * max(1, len(positions)), values["speed_kmh"] / 3.6
+        cases.append(
+            SweepCase(values=values, catenary=line, pantographs=heads, speed=speed, positions=positions)
+        )
+    faults = [case.error for case in cases if isinstance(case, BrokenCase)]
+    if len(faults) == len(cases):
+        raise faults[0]
+    return cases
+
+
+def _rows(record: Record) -> list[dict[str, Any]]:
+    """One row a pantograph; a failed case has one row with its error."""
+    if "error" in record:
+        return [record["values"] | {"error": record["error"]}]
+    summary = record["summary"]
+    common = {
+        key: summary[key]
+        for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
+    }
+    return [
+        record["values"]
+        | {"number": i}
+        | {key: value for key, value in statistics.items() if key != "name"}
+        | common
+        | {"warnings": len(summary["warnings"]), "error": ""}
+        for i, statistics in enumerate(summary["pantographs"], start=1)
+    ]
+
+
+def _write(output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
+    from catenary_fe import views
+
+    columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
+    with output_folder(output) as folder:
+        assert folder is not None
+        folder.table("sweep.csv", [{key: row.get(key, "") for key in columns} for row in rows])
+        x, by = _axis(axes)
+        good = [row for row in rows if not row["error"]]
+        if good and x:
+            folder.picture("contact_force.png", views.plot_sweep_forces(good, x, by))
+            folder.picture("standard_deviation.png", views.plot_sweep_deviation(good, x, by))
+            folder.picture("support_uplift.png", views.plot_sweep_uplift(good, x, by))
+
+
+def _axis(axes: dict[str, list[Any]]) -> tuple[str | None, list[str]]:
+    """What goes along the horizontal axis, and what tells the curves apart."""
+    varied = [name for name, values in axes.items() if len(values) > 1]
+    numeric = [name for name in varied if all(isinstance(v, float) for v in axes[name])]
+    x = numeric[0] if numeric else None
+    return x, [name for name in varied if name != x]
+
+
+def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
+    varied = [name for name, values in axes.items() if len(values) > 1] or ["speed_kmh"]
+    if any(row.get("number", 1) > 1 for row in rows):
+        varied.append("number")
+    table = [
+        [*(row.get(name, "") for name in varied), *(_shown(row, key) for key, _ in _FIGURES)] for row in rows
+    ]
+    print_table("sweep", [*varied, *(title for _, title in _FIGURES)], table)
+
+
+def _shown(row: dict[str, Any], key: str) -> str:
+    return "failed" if row["error"] else f"{row[key]:.1f}"

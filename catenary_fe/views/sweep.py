@@ -1,0 +1,116 @@
+"""Pictures of a sweep: force statistics and uplift against what was varied, with the criteria."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from catenary_fe.system import target_mean_force
+from catenary_fe.system.current_collection import DEVIATION_SHARE
+from catenary_fe.views.style import finish, headroom, new_axes
+
+Rows = Sequence[Mapping[str, Any]]
+_COLOURS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3", "#8a6d1f", "#2a8f8f", "#a33b5e", "#5a5a5a")
+_CRITERION: dict[str, Any] = {"color": "#222222", "linewidth": 1.1}
+
+
+def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
+    """Mean force, mean ± 3σ and actual extremes against ``x``, one colour for each combination of ``by``.
+
+    rows : of a sweep's table, without failed cases
+    x : column along the horizontal axis
+    by : columns that tell the curves apart
+    """
+    ax = new_axes(ax, (10.0, 5.6))
+    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+        at = _column(curve, x)
+        ax.plot(at, _column(curve, "mean_N"), "o-", color=colour, markersize=4, label=f"{name}mean")
+        low, high = _column(curve, "statistical_min_N"), _column(curve, "statistical_max_N")
+        ax.fill_between(at, low, high, color=colour, alpha=0.12, label=f"{name}mean ± 3σ")
+        ax.plot(at, _column(curve, "min_N"), "v:", color=colour, markersize=4, linewidth=0.8)
+        ax.plot(at, _column(curve, "max_N"), "^:", color=colour, markersize=4, linewidth=0.8)
+    ax.plot([], [], "^:", color="#777777", markersize=4, label="actual maximum")
+    ax.plot([], [], "v:", color="#777777", markersize=4, label="actual minimum")
+    if x == "speed_kmh":
+        speeds = np.linspace(*_ends(rows, x), 100)
+        means = [target_mean_force("EN 50367 AC", v / 3.6) for v in speeds]
+        ax.plot(speeds, means, "--", **_CRITERION, label="largest mean force, EN 50367 AC")
+    ax.axhline(0.0, **_CRITERION, linestyle=":", label="mean − 3σ must stay above 0")
+    return _finished(ax, x, "contact force, 0 to 20 Hz (N)", "Contact force")
+
+
+def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
+    """Standard deviation against ``x`` with the largest one that is allowed, a share of the mean force."""
+    ax = new_axes(ax, (10.0, 4.6))
+    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+        at = _column(curve, x)
+        ax.plot(at, _column(curve, "std_N"), "o-", color=colour, markersize=4, label=f"{name}σ")
+        most = DEVIATION_SHARE * _column(curve, "mean_N")
+        ax.plot(
+            at,
+            most,
+            "--",
+            color=colour,
+            linewidth=1.1,
+            label=f"{name}{DEVIATION_SHARE:g} of the mean, the most allowed",
+        )
+    ax.set_ylim(bottom=0.0)
+    return _finished(ax, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
+
+
+def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
+    """Largest uplift at a support of the evaluated spans against ``x``."""
+    ax = new_axes(ax, (10.0, 4.2))
+    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+        values = _column(curve, "max_support_uplift_mm")
+        ax.plot(_column(curve, x), values, "o-", color=colour, markersize=4, label=f"{name}uplift")
+    ax.set_ylim(bottom=0.0)
+    return _finished(ax, x, "largest uplift at a support (mm)", "Uplift")
+
+
+def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, list[Mapping[str, Any]]]]:
+    """Name and rows of each curve, in the order of ``x``."""
+    several = any(row.get("number", 1) > 1 for row in rows)
+    curves: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        parts = [_named(key, row[key]) for key in by]
+        if several:
+            parts.append(f"pantograph {row['number']}")
+        name = ", ".join(parts)
+        curves.setdefault(f"{name}: " if name else "", []).append(row)
+    return [(name, sorted(curve, key=lambda row: row[x])) for name, curve in curves.items()]
+
+
+def _named(key: str, value: Any) -> str:
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return text if key == "pantograph" else f"{_title(key)} {text}"
+
+
+def _title(key: str) -> str:
+    return {"speed_kmh": "speed (km/h)"}.get(key, key.replace("_", " "))
+
+
+def _column(curve: Rows, key: str) -> Any:
+    return np.array([row[key] for row in curve], dtype=float)
+
+
+def _ends(rows: Rows, x: str) -> tuple[float, float]:
+    values = [row[x] for row in rows]
+    return min(values), max(values)
+
+
+def _colours() -> list[str]:
+    return list(_COLOURS) * 100
+
+
+def _finished(ax: Axes, x: str, y: str, what: str) -> Axes:
+    names = len(ax.get_legend_handles_labels()[1])
+    if names <= 12:
+        headroom(ax, 0.09 * (1 + (names + 2) // 3))
+        ax.legend(loc="upper left", fontsize=8, ncols=3, framealpha=0.9)
+    else:
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7)
+    return finish(ax, _title(x), y, f"{what} against {_title(x)}")

@@ -1,0 +1,177 @@
+"""Linearised runs: against nonlinear ones, lanes against each other, compiled against plain."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import catenary_fe as cf
+from catenary_fe.analysis.linear_forces import one_way, solve_one_way
+from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+
+
+@pytest.fixture(scope="module")
+def linearised(short_shape, pantograph):
+    return cf.simulate(short_shape, [pantograph], speed=250 / 3.6, store_wire=0.02, method="linearised")
+
+
+def filtered_difference(a, b):
+    inside = a.window(0)
+    return np.std((a.filtered_contact_force() - b.filtered_contact_force())[0, inside])
+
+
+def test_statistics_agree_with_the_nonlinear_run(linearised, short_run):
+    ours, theirs = (run.contact_force_statistics()[0] for run in (linearised, short_run))
+    for name in ("mean", "std", "max", "min"):
+        assert getattr(ours, name) == pytest.approx(getattr(theirs, name), rel=0.01), name
+    assert linearised.largest_support_uplift() == pytest.approx(short_run.largest_support_uplift(), rel=0.01)
+    assert filtered_difference(linearised, short_run) < 0.03 * theirs.std
+    assert linearised.method == "linearised"
+    assert not linearised.warnings
+
+
+def test_histories_agree_with_the_nonlinear_run(linearised, short_run):
+    assert set(linearised.data.variables) == set(short_run.data.variables)
+    for name, close in (
+        ("contact_force", 5.0), ("mass_height", 5e-4), ("wire_height", 5e-4), ("support_uplift", 5e-4),
+        ("contact_wire_height", 1e-3),
+    ):  # fmt: skip
+        ours, theirs = linearised.data[name].values, short_run.data[name].values
+        assert ours.shape == theirs.shape
+        assert np.sqrt(np.mean((ours - theirs) ** 2)) < close, name
+        assert ours[..., 0] == pytest.approx(theirs[..., 0], abs=2e-3 if name == "contact_force" else 1e-5)
+
+
+def test_droppers_go_slack_when_they_do_in_the_nonlinear_run(linearised, short_run):
+    ours, theirs = (run.data["dropper_force"].values for run in (linearised, short_run))
+    slack = (theirs <= 0).sum()
+    assert slack > 100
+    assert (ours >= 0).all()
+    assert (ours <= 0).sum() == pytest.approx(slack, rel=0.05)
+
+
+def test_without_slack_droppers_it_would_be_another_result(linearised, short, pantograph):
+    """The twin: droppers that push as well as pull change the force by far more than the agreement above."""
+    from catenary_fe.analysis import linear_start
+
+    shape = cf.find_form(short)
+    line = LinearisedCatenary(shape)
+    line._setup.line.tension[:] += 1e6  # so they are never slack
+    plan = linearised.data["position"].values[0]
+    (stiff,) = line.run([Case([pantograph], 250 / 3.6, plan[:1], plan[-1] - plan[0])])
+    assert linear_start  # the start has its own tensions
+    assert filtered_difference(stiff, linearised) > 0.2 * linearised.contact_force_statistics()[0].std
+
+
+def test_lanes_do_not_know_of_each_other(short_shape, pantograph):
+    other = cf.library.pantograph("DSA380")
+    soft = pantograph.replace(contact_damping=50.0)
+    start = np.array([10.0])
+    cases = [
+        Case([pantograph], 200 / 3.6, start, 200.0), Case([other], 250 / 3.6, start, 210.0),
+        Case([soft, pantograph], 250 / 3.6, np.array([45.0, 10.0]), 180.0),
+        Case([pantograph], 300 / 3.6, start, 120.0), Case([other], 180 / 3.6, start, 170.0),
+    ]  # fmt: skip
+    line = LinearisedCatenary(short_shape)
+    together = line.run(cases * 2)
+    for case, one, again in zip(cases, together[:5], together[5:], strict=True):
+        (alone,) = line.run([case])
+        for name in ("contact_force", "dropper_force", "mass_height"):
+            assert one.data[name].values == pytest.approx(alone.data[name].values, abs=1e-6), name
+            assert np.array_equal(one.data[name].values, again.data[name].values, equal_nan=True)
+
+
+PLAIN = """
+import sys
+if {plain}:
+    sys.modules["numba"] = None
+import numpy as np, catenary_fe as cf
+from catenary_fe.analysis import compiled
+from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+assert compiled.COMPILED is not {plain}
+line = cf.load_catenary({layout!r})
+short = line.replace(spans=line.spans[:2], supports=line.supports[:3], evaluated_spans=(2,))
+head = cf.library.pantograph("EN 50318:2002").replace(uplift_force=200.0, contact_damping=20.0)
+(run,) = LinearisedCatenary(cf.find_form(short)).run([Case([head], 80.0, np.array([20.0]), 60.0)])
+np.save({path!r}, np.vstack([run.data[n].values for n in ("contact_force", "dropper_force")]))
+"""
+
+
+def test_plain_and_compiled_code_agree(reference_layout, tmp_path):
+    results = []
+    for plain in (False, True):
+        path = str(tmp_path / f"{plain}.npy")
+        code = PLAIN.format(plain=plain, layout=str(reference_layout), path=path)
+        subprocess.run([sys.executable, "-c", code], check=True, timeout=300)
+        results.append(np.load(path))
+    assert results[0] == pytest.approx(results[1], abs=1e-4)
+    assert (results[0][1:] <= 0).any()  # a dropper went slack
+
+
+def test_contact_is_lost_and_found(short_shape, pantograph):
+    light = pantograph.replace(uplift_force=45.0)
+    run = cf.simulate(short_shape, [light], speed=300 / 3.6, method="linearised")
+    force, gap = (
+        run.data["contact_force"].values[0],
+        run.data["mass_height"].values[0, 0] - run.data["wire_height"].values[0],
+    )
+    assert 0.01 < (force <= 0).mean() < 0.5
+    assert force == pytest.approx(np.maximum(0.0, 50e3 * gap), abs=1e-3)
+
+
+def test_a_mean_force_is_reached(short_shape):
+    wanted = cf.library.pantograph("EN 50318:2018 AC")
+    run = cf.simulate(short_shape, [wanted], speed=250 / 3.6, method="linearised")
+    assert run.contact_force_statistics()[0].mean == pytest.approx(0.00097 * 250**2 + 70, abs=0.1)
+
+
+def test_an_elastic_pantograph(short_shape):
+    elastic = cf.ElasticPantograph(force=150.0, stiffness=500.0)
+    ours, theirs = (
+        cf.simulate(short_shape, [elastic], speed=40.0, method=method)
+        for method in ("linearised", "nonlinear")
+    )
+    force = theirs.data["contact_force"].values
+    assert ours.data["contact_force"].values == pytest.approx(force, abs=0.05 * np.ptp(force))
+
+
+def test_halving_the_step_halves_the_error_twice(short_shape, pantograph):
+    """Second order where nothing goes slack or off: a light, steady push."""
+    smooth = cf.ElasticPantograph(force=20.0)
+    runs = [
+        cf.simulate(
+            short_shape, [smooth], speed=30.0, method="linearised", time=cf.TimeSettings(step=h)
+        ).data["wire_height"].values[0]
+        for h in (4e-3, 2e-3, 1e-3)
+    ]  # fmt: skip
+    n = min(len(runs[0]), len(runs[1][::2]), len(runs[2][::4]))
+    coarse, middle, fine = runs[0][:n], runs[1][::2][:n], runs[2][::4][:n]
+    assert np.std(coarse - middle) > 2.5 * np.std(middle - fine)
+
+
+def test_it_says_when_motions_are_not_small(short_shape, pantograph):
+    run = cf.simulate(
+        short_shape, [pantograph.replace(uplift_force=350.0)], speed=300 / 3.6, method="linearised"
+    )
+    assert any(
+        "slack dropper shortens by up to" in w and "compare with the nonlinear" in w for w in run.warnings
+    )
+
+
+def test_bad_questions(short_shape, pantograph):
+    with pytest.raises(cf.InputError, match="method = 'linear': must be one of nonlinear, linearised"):
+        cf.simulate(short_shape, [pantograph], speed=70.0, method="linear")
+    bent = cf.ElasticPantograph(law=((0.0, 200.0), (0.1, 0.0)))
+    with pytest.raises(cf.InputError, match="straight law"):
+        cf.simulate(short_shape, [bent], speed=70.0, method="linearised")
+
+
+@settings(deadline=None)  # the first call compiles
+@given(spring=st.floats(-500, 500), damper=st.floats(-500, 500), cs=st.floats(0, 3), cd=st.floats(0, 3))
+def test_the_law_is_solved_exactly(spring, damper, cs, cd):
+    force = solve_one_way(spring, damper, cs, cd)
+    assert force >= 0
+    assert force == pytest.approx(one_way(spring - cs * force, damper - cd * force), abs=1e-9)

@@ -1,0 +1,144 @@
+"""Real-time factors of all ways to run, in one process after another: compare them with each other only.
+
+``python tests/benchmarks/speed.py [--repeat 3] [--seconds 3]`` runs EN 50318:2002 at 300 km/h with steps of
+1 ms on the default mesh. Wall time depends on what else the machine does; the last column counts processor
+time, as if each core had nothing else to do. The best of the repetitions is printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import catenary_fe as cf
+from catenary_fe.analysis.linear_arrays import LANES
+from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.fe.linear_model import linear_model
+
+LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
+SPEED, START, STEP = 300 / 3.6, 10.0, 1e-3
+CASES_A_CORE = 2 * LANES
+
+
+def nonlinear(shape: cf.Shape, seconds: float, step: float = STEP) -> float:
+    from catenary_fe.fe.drive import Trip, drive
+
+    trip = Trip(SPEED, np.array([START]), round(seconds / step), cf.TimeSettings(step=step))
+    head = cf.library.pantograph("EN 50318:2002")
+    drive(shape.catenary, shape.mesh, shape.installation, [(head, 120.0)], trip)
+    return seconds
+
+
+def linearised(line: LinearisedCatenary, cases: int = 1) -> float:
+    head = cf.library.pantograph("EN 50318:2002")
+    runs = line.run([Case([head], SPEED, np.array([START]), 580.0)] * cases)
+    return sum(float(run.time[-1]) for run in runs)
+
+
+_line: LinearisedCatenary | None = None
+
+
+def sweep_worker(cases: int) -> tuple[float, float]:
+    """Simulated seconds and processor time; the line is set up and the code compiled by the first call."""
+    global _line
+    if _line is None:
+        _line = LinearisedCatenary(cf.find_form(cf.load_catenary(LAYOUT)))
+        linearised(_line, 2)
+    begin = time.process_time()
+    return (linearised(_line, cases), time.process_time() - begin) if cases else (0.0, 0.0)
+
+
+def plain_scipy(shape: cf.Shape, seconds: float) -> float:
+    """The trapezoidal rule on the linear model with scipy alone; droppers taut, contact sticks."""
+    from scipy.interpolate import CubicHermiteSpline
+    from scipy.sparse.linalg import splu
+
+    model = linear_model(shape.catenary, shape.mesh, shape.installation)
+    head = cf.library.pantograph("EN 50318:2002")
+    M, D, K = (A.tocsc() for A in (model.mass, model.damping, model.stiffness))
+    solve = splu(M + STEP / 2 * D + STEP**2 / 4 * K, permc_spec="NATURAL", diag_pivot_thresh=0.0).solve
+    line, k = model.contacts[0], head.contact_stiffness
+    rest = CubicHermiteSpline(
+        line.x, line.static[:, 0] - shape.catenary.contact_wire_height, line.static[:, 1]
+    )
+    joints = np.eye(2) - np.eye(2, k=1)
+    m, d, c = (np.array([getattr(s, name) for s in head.stages]) for name in ("mass", "damping", "stiffness"))
+    Mp, Dp, Kp = np.diag(m), joints.T @ np.diag(d) @ joints, joints.T @ np.diag(c) @ joints
+    inverse = np.linalg.inv(Mp + STEP / 2 * Dp + STEP**2 / 4 * Kp)
+    q, v, a = (np.zeros(model.size) for _ in range(3))
+    y, u, b = (np.zeros(2) for _ in range(3))
+    for n in range(1, round(seconds / STEP) + 1):
+        x = START + SPEED * STEP * n
+        e = int(np.searchsorted(line.x, x, side="right")) - 1
+        row = np.zeros(model.size)
+        xi, length = (x - line.x[e]) / (line.x[e + 1] - line.x[e]), line.lengths[e]
+        weights = 1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2
+        row[line.index[e : e + 2].ravel()] = np.array(weights) * [1, length, 1, length]
+        q, v = q + STEP * v + STEP**2 / 4 * a, v + STEP / 2 * a
+        y, u = y + STEP * u + STEP**2 / 4 * b, u + STEP / 2 * b
+        a, give = solve(-(D @ v + K @ q)), solve(row)
+        b = inverse @ (np.array([0.0, 120.0]) - Dp @ u - Kp @ y)
+        gap = y[0] + STEP**2 / 4 * b[0] - rest(x) - row @ (q + STEP**2 / 4 * a)
+        force = k * gap / (1 + k * STEP**2 / 4 * (row @ give + inverse[0, 0]))
+        a, b = a + force * give, b - force * inverse[:, 0]
+        q, v, y, u = q + STEP**2 / 4 * a, v + STEP / 2 * a, y + STEP**2 / 4 * b, u + STEP / 2 * b
+    return seconds
+
+
+def main() -> None:
+    """Measure and print."""
+    from joblib import Parallel, delayed
+
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=2.0, help="simulated by the slow ones")
+    options = parser.parse_args()
+    cores = os.cpu_count() or 1
+    catenary = cf.load_catenary(LAYOUT)
+    shape = cf.find_form(catenary)  # loads Exudyn
+    line = LinearisedCatenary(shape)
+    linearised(line)  # compiles
+    setups = [_setup(catenary) for _ in range(options.repeat)]
+    print(f"{'set-up: form, statics, linearisation':44s} {min(s[0] for s in setups):6.2f} s wall", end="")
+    print(f" {min(s[1] for s in setups):6.2f} s processor")
+    print(f"{'real-time factor of':44s} {'wall':>8s} {'processor':>10s}")
+    rows: dict[str, Callable[[], float]] = {
+        "nonlinear run": lambda: nonlinear(shape, options.seconds),
+        "nonlinear run, steps of 2 ms": lambda: nonlinear(shape, options.seconds, 2e-3),
+        "plain scipy, linear, droppers taut": lambda: plain_scipy(shape, options.seconds),
+        "linearised run": lambda: linearised(line),
+        f"linearised, {LANES} lanes on one core": lambda: linearised(line, CASES_A_CORE),
+    }
+    best = dict.fromkeys(rows, (0.0, 0.0))
+    for _ in range(options.repeat):
+        for name, run in rows.items():
+            begin, used = time.perf_counter(), time.process_time()
+            simulated = run()
+            factors = simulated / (time.perf_counter() - begin), simulated / (time.process_time() - used)
+            best[name] = tuple(map(max, best[name], factors))
+    for name, (wall, processor) in best.items():
+        print(f"{name:44s} {wall:8.2f} {processor:10.2f}")
+    with Parallel(n_jobs=cores, batch_size=1, pre_dispatch="all") as parallel:
+        parallel(delayed(sweep_worker)(0) for _ in range(4 * cores))
+        wall = processor = 0.0
+        for _ in range(options.repeat):
+            begin = time.perf_counter()
+            parts = parallel(delayed(sweep_worker)(CASES_A_CORE) for _ in range(cores))
+            wall = max(wall, sum(p[0] for p in parts) / (time.perf_counter() - begin))
+            processor = max(processor, sum(simulated / used for simulated, used in parts))
+    print(f"{f'batched sweep on {cores} cores':44s} {wall:8.2f} {processor:10.2f}")
+
+
+def _setup(catenary: cf.Catenary) -> tuple[float, float]:
+    begin, used = time.perf_counter(), time.process_time()
+    LinearisedCatenary(cf.find_form(catenary))
+    return time.perf_counter() - begin, time.process_time() - used
+
+
+if __name__ == "__main__":
+    main()
