@@ -25,8 +25,9 @@ def test_layout_and_pantograph_files(tmp_path):
     assert cf.load_pantograph(tmp_path / "pantograph.toml").mean_force == "EN 50367 AC"
 
 
-def test_there_is_one_line_to_run_and_one_to_test():
-    run, test = blocks("sh")
-    assert len(run.strip().splitlines()) == 1
-    assert len(test.strip().splitlines()) == 1
+def test_what_a_newcomer_copies_is_short():
+    run, look, docs, test = blocks("sh")
+    for block in (run, docs, test):
+        assert len(block.strip().splitlines()) == 1
+    assert len(look.strip().splitlines()) <= 4
     compile(blocks("python")[0], "README", "exec")

@@ -60,7 +60,7 @@ def simulate(
     speed : [m/s]
     positions : [m] along the line at the start, one a pantograph; unset (for one): near the first support
     time : settings of the time integration
-    store_wire : [s] between stored shapes of the whole contact wire; unset: none
+    store_wire : [s] between stored shapes of the whole wires; unset: none
     progress : called with the share done, 0 to 1
     method : "linearised" about the static state, many times faster: slack droppers and contact are solved in
         each step, large motions are not there. It warns where they matter.

@@ -21,6 +21,7 @@ from catenary_fe.cli.terminal import (
     read_layout,
     spans_option,
     warned,
+    working,
 )
 from catenary_fe.system import Catenary, load_catenary
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
@@ -31,7 +32,8 @@ from catenary_fe.system.plausibility import layout_warnings
 @layout_argument
 @output_option
 @json_option
-def info(layout: str, output: str | None, as_json: bool) -> None:
+@quiet_option
+def info(layout: str, output: str | None, as_json: bool, quiet: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
     facts = layout_facts(catenary)
@@ -45,7 +47,8 @@ def info(layout: str, output: str | None, as_json: bool) -> None:
     if as_json:
         print_json(facts | {"warnings": warnings})
     else:
-        print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
+        if not quiet:
+            print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
         print_warnings(warnings)
 
 
@@ -123,7 +126,8 @@ def form(
 
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        shape = find_heights(catenary) if given_lengths else find_form(catenary)
+        with working("form finding", not quiet):
+            shape = find_heights(catenary) if given_lengths else find_form(catenary)
         rows = [row.as_dict() for row in shape.dropper_schedule()]
         result: dict[str, Any] = {
             "droppers": rows,
@@ -185,7 +189,8 @@ def static(
 
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        shape = find_form(catenary)
+        with working("form finding", not quiet):
+            shape = find_form(catenary)
         with progress_bar("elasticity", not quiet) as progress:
             curve = elasticity(shape, force=force, spans=spans, progress=progress)
         rows = [

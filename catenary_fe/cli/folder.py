@@ -17,6 +17,8 @@ from catenary_fe.system import InputError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from catenary_fe.results import Run
+
 
 class Folder:
     """Files written aside, to be moved into place together."""
@@ -36,11 +38,26 @@ class Folder:
             writer.writeheader()
             writer.writerows(rows)
 
+    def text(self, name: str, text: str) -> None:
+        """Write a text file."""
+        (self.path / name).write_text(text, encoding="utf-8")
+
     def picture(self, name: str, ax: Axes) -> None:
         """Write a picture as PNG."""
-        figure = ax.get_figure(root=True)
-        assert figure is not None
-        figure.savefig(self.path / name, dpi=130, metadata={"Software": None})
+        save_picture(self.path / name, ax)
+
+
+def save_picture(path: Path, ax: Axes) -> None:
+    """Write a picture in the format of the file's ending. Raises InputError where that cannot be."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    try:
+        metadata = {"Software": None} if path.suffix == ".png" else None
+        figure.savefig(path, dpi=130, metadata=metadata)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    except ValueError as error:  # an unknown format
+        raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
 
 
 @contextmanager
@@ -96,6 +113,16 @@ def _named(path: str) -> Path:
     if not path.strip():
         raise InputError("output folder '': has no name; give one, or '.' for the folder you are in")
     return Path(path)
+
+
+def run_in(path: str | Path) -> Run:
+    """The run in a folder that ``catenary-fe run -o`` wrote, or in a file of it. Raises InputError."""
+    from catenary_fe.results import load_run
+
+    path = Path(path)
+    if path.is_dir() and not (path / "run.nc").is_file():
+        raise InputError(f"{path}: holds no run.nc; give a folder that 'catenary-fe run ... -o DIR' wrote")
+    return load_run(path / "run.nc" if path.is_dir() else path)
 
 
 def _first_missing(path: Path) -> Path | None:

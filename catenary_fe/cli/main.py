@@ -7,13 +7,21 @@ import sys
 
 import click
 
+from catenary_fe.cli.compare import compare
+from catenary_fe.cli.completion import completion
 from catenary_fe.cli.design import form, info, static
+from catenary_fe.cli.export import export
 from catenary_fe.cli.modes import modes
 from catenary_fe.cli.paper import paper
+from catenary_fe.cli.pictures import film, waves
+from catenary_fe.cli.report import report
+from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.sweep import sweep
+from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
+from catenary_fe.cli.view import view
 from catenary_fe.system import CatenaryError
 
 EPILOG = """\b
@@ -21,21 +29,52 @@ Examples:
   catenary-fe info models/layouts/en50318_2002.toml
   catenary-fe form models/layouts/en50318_2002.toml -o form
   catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o run300
+  catenary-fe report run300
+  catenary-fe compare run250 run300
 
 Exit codes: 0 good, 1 a criterion or a validation missed, 2 usage, 3 bad input, 4 solver."""
 
 MOST_LINES = 20  # of one error: a slip in a span repeats in all spans like it
 
 
+class _InOrder(click.Group):
+    """Lists commands in the order of work, not of the alphabet."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        return list(self.commands)
+
+
 @click.group(
-    epilog=EPILOG, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
+    cls=_InOrder,
+    epilog=EPILOG,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(package_name="catenary_fe")
 def commands() -> None:
     """Simulate railway catenaries and the pantographs that slide along them."""
 
 
-for command in (info, form, static, modes, run, sweep, paper, validate, schema):
+_SHORT_HELP = {
+    info: "Check a layout: wave speeds, masses, drawing.",
+    form: "Dropper lengths and the static shape.",
+    static: "Elasticity along the line.",
+    modes: "Eigenfrequencies and mode shapes.",
+    run: "Run pantographs along a layout.",
+    sweep: "Runs over speeds, pantographs and values of a layout.",
+    report: "One HTML page of a run, to read and hand on.",
+    compare: "Runs side by side: inputs, figures, traces.",
+    film: "Film of a run, as GIF or MP4.",
+    waves: "Waves of a run over place and time.",
+    view: "The model in Exudyn's own viewer.",
+    export: "Histories of a run as CSV files.",
+    rerun: "Repeat a run from its folder.",
+    paper: "The figures of the paper, computed and drawn.",
+    validate: "Computed beside reference values.",
+    schema: "JSON Schema of layout and pantograph files.",
+    completion: "Completion script for the shell.",
+}
+for command, text in _SHORT_HELP.items():
+    command.short_help = text
     commands.add_command(command)
 
 
@@ -48,9 +87,9 @@ def main(arguments: list[str] | None = None) -> int:
     except CatenaryError as error:
         lines = str(error).splitlines()
         for line in lines[:MOST_LINES]:
-            click.echo(f"error: {line}", err=True)
+            say("error", line, "red")
         if len(lines) > MOST_LINES:
-            click.echo(f"error: and {len(lines) - MOST_LINES} more faults like these", err=True)
+            say("error", f"and {len(lines) - MOST_LINES} more faults like these", "red")
         return error.exit_code
     except click.ClickException as error:
         error.show()

@@ -18,6 +18,7 @@ from catenary_fe.cli.terminal import (
     quiet_option,
     read_layout,
     warned,
+    working,
 )
 from catenary_fe.system.plausibility import layout_warnings
 
@@ -49,8 +50,9 @@ def modes(
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         # the usual mesh leaves 0.1 % in the lowest frequencies, half of it 0.02 %
-        shape = find_form(catenary, MeshSettings().halved())
-        found = solve_modes(shape, count=count, below=below)
+        with working("modes", not quiet):
+            shape = find_form(catenary, MeshSettings().halved())
+            found = solve_modes(shape, count=count, below=below)
         rows = found.table()
         result: dict[str, Any] = {
             "modes": rows,

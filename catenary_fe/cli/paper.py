@@ -11,13 +11,16 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, progress_bar, quiet_option
 from catenary_fe.system import InputError
-from catenary_fe.views.index_page import PageEntry, index_page
+
+if TYPE_CHECKING:
+    from catenary_fe.views.index_page import PageEntry
 
 TITLE = "Selected problems of wave phenomena in catenaries: all figures, computed"
 EPILOG = """\b
@@ -45,6 +48,8 @@ def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet
     FIGURE is a number (5), or part of a script's name (dispersion). Exit code 1 when a figure fails; the
     others are drawn all the same.
     """
+    from catenary_fe.views.index_page import index_page
+
     scripts = chosen_scripts(_scripts_folder(), figures)
     folder = writable_folder(output)
 
@@ -109,6 +114,8 @@ def draw_all(
 
 def draw(script: Path, folder: Path) -> tuple[PageEntry, float]:
     """Run one script; returns what the page shows of it, and the seconds it took."""
+    from catenary_fe.views.index_page import PageEntry
+
     picture, facts = folder / f"{script.stem}.png", folder / f"{script.stem}.json"
     for old in (picture, facts):
         old.unlink(missing_ok=True)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.terminal import (
     json_option,
@@ -23,6 +25,7 @@ from catenary_fe.cli.terminal import (
     read_layout,
     spans_option,
     warned,
+    working,
 )
 from catenary_fe.system import (
     InputError,
@@ -43,10 +46,18 @@ Examples:
   catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC"""
 
 
+WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
+
+
 @click.command(cls=ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
 @layout_argument
 @click.option(
-    "--pantograph", "names", multiple=True, required=True, help="Name in the library, or TOML file."
+    "--pantograph",
+    "names",
+    multiple=True,
+    required=True,
+    shell_complete=pantograph_names,
+    help="Name in the library, or TOML file.",
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
@@ -67,8 +78,13 @@ Examples:
     show_default=True,
 )
 @spans_option
-@click.option("--store-wire-ms", type=float, help="Store the whole contact wire at this interval.")
 @planar_option
+@click.option(
+    "--store-wire-ms",
+    type=click.FloatRange(0.0),
+    help="Interval of the stored shapes of the whole wires, 0 for none; unset: 10 with -o, which reports and"
+    " films need.",
+)
 @click.option(
     "--criteria",
     "system",
@@ -104,10 +120,14 @@ def run(
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
+    files = InputFiles.read(layout, names)
+    if store_wire_ms is None:
+        store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        shape = find_form(catenary, mesh)
+        with working("form finding", not quiet):
+            shape = find_form(catenary, mesh)
         with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress:
             result = simulate(
                 shape,
@@ -115,16 +135,19 @@ def run(
                 speed=speed_kmh / 3.6,
                 positions=positions or None,
                 time=time,
-                store_wire=store_wire_ms / 1e3 if store_wire_ms is not None else None,
+                store_wire=store_wire_ms / 1e3 if store_wire_ms else None,
                 progress=progress,
                 method=method,
             )
         summary = result.summary(filter=filter_kind)
         rows = judged(shape, result, system, filter_kind, quiet) if system else []
         if system:
+            summary["criteria_system"] = system
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
-            write_run(folder, shape, result, summary, rows)
+            with working("pictures", not quiet):
+                write_run(folder, shape, result, summary, rows)
+            files.keep(folder, result, _options(click.get_current_context()))
     if as_json:
         print_json(summary)
     elif not quiet:
@@ -136,6 +159,25 @@ def run(
     if not as_json:
         print_warnings(summary["warnings"])
     return exit_code(rows)
+
+
+def _options(context: click.Context) -> list[str]:
+    """The options as they were given, but for pantographs and what only concerns the output."""
+    words: list[str] = []
+    for option in context.command.params:
+        name = option.name or ""
+        given = context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+        if not given or name in ("layout", "names", "output", "as_json", "quiet"):
+            continue
+        value = context.params[name]
+        if value is True:
+            words.append(option.opts[0])
+            continue
+        if name == "spans":
+            value = ",".join(map(str, value))
+        for each in value if isinstance(value, tuple) else (value,):
+            words += [option.opts[0], f"{each:g}" if isinstance(each, float) else str(each)]
+    return words
 
 
 def write_run(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 import click
@@ -35,6 +36,9 @@ def _span_numbers(context: click.Context, parameter: click.Parameter, text: str 
 
 spans_option = click.option(
     "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
+)
+shown_spans_option = click.option(
+    "--spans", callback=_span_numbers, help="Spans to show, e.g. 5,6; unset: around the evaluated ones."
 )
 
 
@@ -77,10 +81,27 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
+def say(kind: str, text: str, colour: str) -> None:
+    """One line on standard error, its first word in colour on a terminal (unless NO_COLOR is set)."""
+    coloured = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+    click.echo(
+        f"{click.style(f'{kind}:', fg=colour, bold=True) if coloured else f'{kind}:'} {text}", err=True
+    )
+
+
 def print_warnings(warnings: Sequence[str]) -> None:
     """One line each on standard error."""
     for warning in warnings:
-        click.echo(f"warning: {warning}", err=True)
+        say("warning", warning, "yellow")
+
+
+def working(text: str, shown: bool) -> AbstractContextManager[Any]:
+    """A sign of life on standard error for work of a few seconds, if that is a terminal."""
+    if not shown or not sys.stderr.isatty():
+        return nullcontext()
+    from rich.console import Console
+
+    return Console(stderr=True).status(text)
 
 
 @contextmanager

@@ -66,7 +66,7 @@ class Trip:
     start : [m], shape (pantographs,), positions at the start
     steps : number of time steps
     time : settings of the integration
-    wire_interval : [s] between stored shapes of the contact wire, or None
+    wire_interval : [s] between stored shapes of the wires, or None
     energy_interval : [s] between readings of the energy, or None
     """
 

@@ -12,6 +12,7 @@ from catenary_fe.results.modes import ModeKind, Modes, WireShapes
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.wires import WireHistory
 
 __all__ = [
     "Criterion",
@@ -21,6 +22,7 @@ __all__ = [
     "ModeKind",
     "Modes",
     "Run",
+    "WireHistory",
     "WireShapes",
     "band_pass",
     "criteria_rows",

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.wires import WireHistory, wire_histories
 from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
 
 if TYPE_CHECKING:
@@ -28,8 +29,9 @@ class Run:
     """Histories of a run, as an xarray Dataset with units, and what they came from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
-        dropper_force, support_uplift, and contact_wire_height where the whole wire was stored; each has
-        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
+        dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
+        were stored; each has ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions
+        and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 
@@ -76,6 +78,10 @@ class Run:
     def step(self) -> float:
         """[s] between the times."""
         return float(self.time[1] - self.time[0])
+
+    def wires(self) -> tuple[WireHistory, ...]:
+        """Whole wires over time, contact wires first. Raises InputError where the run stored none."""
+        return wire_histories(self.data)
 
     def window(self, pantograph: int, spans: Sequence[int] | None = None) -> NDArray[np.bool_]:
         """Shape (times,): when a pantograph (from 0) is inside the given spans.
@@ -148,7 +154,7 @@ class Run:
         path = Path(path)
         aside = path.with_name(path.name + ".part")
         try:
-            self.data.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
+            self.data.drop_encoding().to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
             aside.replace(path)
         except OSError as error:
             raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
@@ -171,6 +177,12 @@ class Run:
         from catenary_fe.views import plot_dropper_forces
 
         return plot_dropper_forces(self, ax=ax)
+
+    def plot_waves(self, ax: Axes | None = None) -> Axes:
+        """Waves on the contact wire over place and time. See :func:`catenary_fe.views.plot_run_waves`."""
+        from catenary_fe.views import plot_run_waves
+
+        return plot_run_waves(self, ax=ax)
 
 
 def load_run(path: str | Path) -> Run:

@@ -60,8 +60,9 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
         name = f"support {i + 1}: at most {uplift[i].max():.1f} mm"
         ax.plot(run.time, uplift[i], color=colour, linewidth=1.3, label=name)
     ax.plot([], [], color="#c9c9c9", linewidth=0.8, label="other supports")
-    headroom(ax, 0.18)
-    ax.legend(loc="upper left", fontsize=8, ncols=len(evaluated) + 1, framealpha=0.9)
+    rows = 1 + len(evaluated) // 4
+    headroom(ax, 0.08 + 0.1 * rows)
+    ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: uplift at the supports"
     return finish(ax, "time (s)", "uplift (mm)", title)
 

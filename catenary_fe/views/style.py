@@ -12,6 +12,7 @@ MESSENGER = "#1f5a85"  # messenger wire
 STITCH = "#3a7d44"  # stitch wire
 DROPPER = "#7a7a7a"
 SUPPORT = "#444444"
+SLACK = "#d62728"  # a dropper that has gone slack
 PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
 
 

@@ -70,3 +70,14 @@ def test_the_drawn_static_shape_touches_the_design_heights(drawings, short_shape
     heights = np.interp(short_shape.catenary.dropper_positions, *curve.get_data())
     third = short_shape.catenary.dropper_spans == 3
     assert heights[third] == pytest.approx(0, abs=0.01)
+
+
+def test_the_rays_of_a_run_are_waves(short_run):
+    """Ahead at c to the next support, back to the pantograph; a wave pulse travels along the ray."""
+    ax = views.plot_run_waves(short_run)
+    x, t = next(line.get_data() for line in ax.lines if "ahead" in line.get_label())
+    c, v = short_run.catenary.contact_wire.wave_speed, short_run.speed
+    assert (x[1] - x[0]) / (t[1] - t[0]) == pytest.approx(c)
+    assert (x[2] - x[1]) / (t[2] - t[1]) == pytest.approx(-c)
+    assert x[2] == pytest.approx(np.interp(t[2], short_run.time, short_run.data["position"].values[0]))
+    assert (x[2] - x[0]) / (t[2] - t[0]) == pytest.approx(v)

@@ -1,0 +1,78 @@
+"""Several runs side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from catenary_fe.cli.folder import output_folder, run_in
+from catenary_fe.cli.terminal import (
+    json_option,
+    output_option,
+    print_json,
+    print_table,
+    quiet_option,
+    working,
+)
+
+
+@click.command(
+    epilog="\b\nExamples:\n  catenary-fe compare run250 run300\n"
+    "  catenary-fe compare before after -o comparison"
+)
+@click.argument("folders", nargs=-1, required=True, type=click.Path(), metavar="FOLDER FOLDER...")
+@click.option(
+    "--filter",
+    "filter_kind",
+    type=click.Choice(["causal", "zero-phase"]),
+    default="causal",
+    show_default=True,
+)
+@output_option
+@json_option
+@quiet_option
+def compare(
+    folders: tuple[str, ...], filter_kind: Any, output: str | None, as_json: bool, quiet: bool
+) -> None:
+    """Put the runs in two or more FOLDERs side by side: what went in differently, and what came out.
+
+    With -o, also pictures of forces, differences and uplifts, and a page comparison.html.
+    """
+    from catenary_fe.results.comparison import input_differences, key_figures
+
+    runs, labels = [run_in(folder) for folder in folders], _labels(folders)
+    columns, inputs = key_figures(runs, labels, filter_kind), input_differences(runs)
+    result: dict[str, Any] = {
+        "inputs_that_differ": [{"name": d.name} | dict(zip(labels, d.values, strict=True)) for d in inputs],
+        "runs": [{"label": column.label, **column.values} for column in columns],
+        "filter": filter_kind,
+    }
+    with output_folder(output) as folder, working("pictures", bool(output) and not quiet):
+        if folder:
+            from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
+            from catenary_fe.views.report.comparison import comparison_page
+
+            folder.json("comparison.json", result)
+            folder.table("comparison.csv", result["runs"])
+            folder.picture("contact_force.png", plot_force_comparison(runs, labels, filter=filter_kind))
+            folder.picture("support_uplift.png", plot_uplift_comparison(runs, labels))
+            folder.text("comparison.html", comparison_page(runs, labels, filter=filter_kind))
+    if as_json:
+        print_json(result)
+    elif not quiet:
+        from catenary_fe.views.report.comparison import figures_table
+
+        if inputs:
+            print_table("what went in differently", ("input", *labels), [(d.name, *d.values) for d in inputs])
+        else:
+            click.echo("the inputs are the same")
+        table = figures_table(columns)
+        print_table("what came out", table.columns, table.rows)
+
+
+def _labels(folders: tuple[str, ...]) -> list[str]:
+    """Last parts of the paths, or the whole paths where those are not unique."""
+    names = [Path(folder).resolve().name for folder in folders]
+    return names if len(set(names)) == len(names) else list(folders)

@@ -1,0 +1,74 @@
+"""Histories of a run as tables, for spreadsheets and other programs."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.results.run import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.system import InputError
+
+Floats = NDArray[np.float64]
+Table = dict[str, Floats]
+
+
+def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
+    """Tables by name, each a column of floats by heading with its unit; time comes first.
+
+    One table a pantograph, one of the supports' uplift, one of the droppers' forces.
+
+    filter : of the filtered contact force
+    """
+    data, filtered = run.data, run.filtered_contact_force(filter)
+    tables: dict[str, Table] = {}
+    for i in range(filtered.shape[0]):
+        masses = data["mass_height"].values[i]
+        tables[f"pantograph_{i + 1}"] = {
+            "time_s": run.time,
+            "position_m": data["position"].values[i],
+            "contact_force_N": data["contact_force"].values[i],
+            "contact_force_0_20_Hz_N": filtered[i],
+            "wire_height_m": data["wire_height"].values[i],
+            **{f"mass_{n + 1}_height_m": z for n, z in enumerate(masses) if np.isfinite(z).all()},
+        }
+    tables["support_uplift"] = {"time_s": run.time} | {
+        f"support_{i + 1}_at_{x:g}_m_uplift_m": values
+        for i, (x, values) in enumerate(
+            zip(data["support_position"].values, data["support_uplift"].values, strict=True)
+        )
+    }
+    tables["dropper_force"] = {"time_s": run.time} | {
+        f"dropper_{i + 1}_at_{x:g}_m_force_N": values
+        for i, (x, values) in enumerate(
+            zip(data["dropper_position"].values, data["dropper_force"].values, strict=True)
+        )
+    }
+    return tables
+
+
+def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> list[Path]:
+    """Write each table as a CSV file of its name, at every so many times; returns the files.
+
+    Raises InputError for a folder that cannot be written or a number of times below 1.
+    """
+    if every < 1:
+        raise InputError(f"every {every} times: must be at least 1")
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, table in tables.items():
+            path = folder / f"{name}.csv"
+            with path.open("w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(table)
+                rows = np.column_stack(list(table.values()))[::every]
+                writer.writerows([f"{value:.9g}" for value in row] for row in rows)
+            written.append(path)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written ({error.strerror or error})") from None
+    return written

@@ -1,0 +1,71 @@
+"""Pictures of several runs over one another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from catenary_fe.results import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.views.style import PANTOGRAPHS, finish, headroom, mark_supports, new_axes
+
+Floats = NDArray[np.float64]
+
+
+def plot_force_comparison(
+    runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal"
+) -> Axes:
+    """Contact forces of each run's first pantograph along the line, and below their differences to the first.
+
+    Returns the axes of the forces; the differences are in the axes below it. Supports are the first run's.
+    """
+    figure = Figure(figsize=(11.0, 6.4), layout="constrained")
+    force, difference = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    curves = [_force(run, filter) for run in runs]
+    first_x, first = curves[0]
+    for axes in (force, difference):
+        mark_supports(axes, runs[0].data["support_position"].values, label=axes is force)
+    for i, ((x, values), label) in enumerate(zip(curves, labels, strict=True)):
+        colour = _colour(i)
+        statistics = runs[i].contact_force_statistics(filter=filter)[0]
+        name = f"{label}: mean {statistics.mean:.1f} N, σ {statistics.std:.1f} N"
+        force.plot(x, values, color=colour, linewidth=1.1, label=name)
+        if i:
+            there = np.interp(first_x, x, values, left=np.nan, right=np.nan)
+            difference.plot(
+                first_x, there - first, color=colour, linewidth=1.1, label=f"{label} − {labels[0]}"
+            )
+    for axes in (force, difference):
+        headroom(axes, 0.2)
+        axes.legend(loc="upper left", fontsize=8, ncols=3, framealpha=0.9)
+        axes.margins(x=0.01)
+    finish(force, "", "contact force\n0 to 20 Hz (N)", "Contact force of the first pantographs")
+    finish(difference, "position along the line (m)", "difference (N)", "")
+    chosen: Axes = force
+    return chosen
+
+
+def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Axes | None = None) -> Axes:
+    """Largest uplift at each support of each run."""
+    ax = new_axes(ax)
+    for i, (run, label) in enumerate(zip(runs, labels, strict=True)):
+        x = run.data["support_position"].values[1:-1]
+        uplift = 1e3 * run.data["support_uplift"].values[1:-1].max(axis=1)
+        ax.plot(x, uplift, "o-", color=_colour(i), linewidth=0.8, markersize=5, label=label)
+    ax.set_ylim(bottom=0)
+    headroom(ax, 0.2)
+    ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
+    return finish(ax, "position along the line (m)", "largest uplift (mm)", "Largest uplift at the supports")
+
+
+def _force(run: Run, filter: FilterKind) -> tuple[Floats, Floats]:
+    return np.asarray(run.data["position"].values[0]), run.filtered_contact_force(filter)[0]
+
+
+def _colour(number: int) -> str:
+    colours = (*PANTOGRAPHS, "#b8860b", "#008b8b", "#555555")
+    return colours[number % len(colours)]

@@ -1,0 +1,228 @@
+"""A film of a run: wires, droppers and pantographs over the contact force, as GIF or MP4."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from catenary_fe.results import Run
+from catenary_fe.system import InputError
+from catenary_fe.views.scene import Scene, scene
+from catenary_fe.views.style import (
+    CONTACT,
+    DROPPER,
+    MESSENGER,
+    PANTOGRAPHS,
+    SLACK,
+    SUPPORT,
+    finish,
+    mark_supports,
+)
+
+Floats = NDArray[np.float64]
+_SIZE, _DPI = (10.0, 5.4), 96  # [in], dots per inch: even numbers of pixels, which MP4 needs
+_MASS_GAP = 0.3  # [m] drawn between the masses
+
+
+def film(
+    run: Run,
+    path: str | Path,
+    *,
+    spans: Sequence[int] | None = None,
+    slowed: float = 4.0,
+    frames_per_second: int = 20,
+    magnified: float = 5.0,
+    progress: Callable[[float], None] | None = None,
+) -> Path:
+    """Draw pantographs that pass some spans; the format is the file's ending, .gif or .mp4.
+
+    spans : numbers of the spans, from 1; unset: the evaluated ones
+    slowed : how many times slower than real time
+    frames_per_second : at most 50, the most that GIF players keep
+    magnified : how many times the motion about the static shape is drawn larger than the heights
+
+    Raises InputError where the run stored no wire shapes, for values out of range, or a path that cannot be
+    written.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in (".gif", ".mp4"):
+        raise InputError(f"{path}: a film's name ends with .gif or .mp4")
+    for name, value in (("slowed", slowed), ("magnified", magnified)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"film: {name} = {value!r}: must be above 0")
+    if not 1 <= frames_per_second <= 50:
+        raise InputError(f"film: {frames_per_second} frames a second: must be 1 to 50")
+    view = _View(run, spans, magnified, slowed)
+    stored = run.wires()[0].time
+    wanted = np.arange(view.begin, view.stop, 1 / (frames_per_second * slowed))
+    frames = np.clip(np.round((wanted - stored[0]) / (stored[1] - stored[0])), 0, stored.size - 1)
+    pictures = view.pictures(scene(run, frames.astype(np.int64)), progress)
+    write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
+    try:
+        write(path, pictures, frames_per_second)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    return path
+
+
+class _View:
+    """The window of the film: what stands still is drawn once, what moves in each frame."""
+
+    def __init__(self, run: Run, spans: Sequence[int] | None, magnified: float, slowed: float) -> None:
+        spans = spans or run.evaluated_spans
+        supports = run.data["support_position"].values
+        if not (min(spans) >= 1 and max(spans) < supports.size):
+            raise InputError(f"spans {list(spans)}: the line has spans 1 to {supports.size - 1}")
+        room = supports[max(spans)] - supports[min(spans) - 1]
+        self.start = max(0.0, float(supports[min(spans) - 1] - 0.15 * room))
+        self.end = min(float(supports[-1]), float(supports[max(spans)] + 0.15 * room))
+        positions = run.data["position"].values
+        seen = ((positions >= self.start) & (positions <= self.end)).any(axis=0)
+        if not seen.any():
+            raise InputError(f"no pantograph was ever inside spans {list(spans)}")
+        self.begin, self.stop = float(run.time[seen][0]), float(run.time[seen][-1])
+        self.magnified, self._run = magnified, run
+        self.figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
+        self._canvas: Any = FigureCanvasAgg(self.figure)
+        self._wires: Axes
+        self._wires, self._force = self.figure.subplots(2, 1, height_ratios=(3, 2), sharex=True)
+        self._title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h, {slowed:g} times slower"
+
+    def pictures(self, scene: Scene, progress: Callable[[float], None] | None) -> Iterator[NDArray[np.uint8]]:
+        """Shape (height, width, 3), frame by frame."""
+        moving = self._draw(scene)
+        self._canvas.draw()
+        background = self._canvas.copy_from_bbox(self.figure.bbox)
+        for frame in range(scene.time.size):
+            self._canvas.restore_region(background)
+            self._move(moving, scene, frame)
+            for artist in moving["all"]:
+                artist.axes.draw_artist(artist)
+            yield np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
+            if progress:
+                progress((frame + 1) / scene.time.size)
+
+    def _draw(self, scene: Scene) -> dict[str, Any]:
+        """Axes and everything that stands still; returns what moves."""
+        ax, low = self._wires, scene.nominal - _MASS_GAP * (1.5 + max(len(m) for m in scene.masses))
+        supports = scene.support_x
+        high = max(float(np.nanmax(wire.static)) for wire in scene.wires)
+        mark_supports(ax, supports, label=False)
+        mark_supports(self._force, supports, label=False)
+        ax.set_xlim(self.start, self.end)
+        ax.set_ylim(low, high + 0.35)
+        width, height = _SIZE[0] * 0.9 / (self.end - self.start), _SIZE[1] * 0.5 / (high + 0.35 - low)
+        finish(ax, "", "height above rail (m)", self._title)
+        note = f"heights about {height / width:.0f}, motion another {self.magnified:g} times exaggerated"
+        ax.text(0.995, 1.02, note, transform=ax.transAxes, ha="right", fontsize=8, color=SUPPORT)
+        self._draw_force()
+        options: dict[str, Any] = {"animated": True}
+        wires = [
+            ax.plot([], [], color=CONTACT if w.touched else MESSENGER, linewidth=1.5, **options)[0]
+            for w in scene.wires
+        ]
+        taut = ax.plot([], [], color=DROPPER, linewidth=0.9, **options)[0]
+        slack = ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", **options)[0]
+        ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", label="slack dropper")
+        ax.legend(loc="upper left", fontsize=8, frameon=False)
+        clock = ax.text(0.995, 0.93, "", transform=ax.transAxes, ha="right", fontsize=9, **options)
+        heads = [
+            ax.plot([], [], color=PANTOGRAPHS[i % len(PANTOGRAPHS)], marker="s", markersize=7, **options)[0]
+            for i in range(len(scene.masses))
+        ]
+        points = [
+            self._force.plot([], [], "o", color=PANTOGRAPHS[i % len(PANTOGRAPHS)], markersize=7, **options)[0]
+            for i in range(len(scene.masses))
+        ]
+        everything = [taut, slack, *wires, *heads, *points, clock]
+        return {"wires": wires, "taut": taut, "slack": slack, "heads": heads, "points": points,
+                "clock": clock, "all": everything}  # fmt: skip
+
+    def _draw_force(self) -> None:
+        run, ax = self._run, self._force
+        names, positions = run.data["pantograph"].values, run.data["position"].values
+        top = 0.0
+        for i, force in enumerate(run.filtered_contact_force()):
+            inside = (positions[i] >= self.start) & (positions[i] <= self.end)
+            colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
+            ax.plot(positions[i][inside], force[inside], color=colour, linewidth=1.0, label=str(names[i]))
+            top = max(top, float(force[inside].max(initial=0.0)))
+        ax.set_ylim(0, 1.25 * top or 1.0)
+        ax.legend(loc="upper left", fontsize=8, frameon=False, ncols=2)
+        finish(ax, "position along the line (m)", "contact force\n0 to 20 Hz (N)", "")
+
+    def _move(self, moving: dict[str, Any], scene: Scene, frame: int) -> None:
+        heights = [scene.heights(i, frame, self.magnified) for i in range(len(scene.wires))]
+        for line, wire, z in zip(moving["wires"], scene.wires, heights, strict=True):
+            line.set_data(wire.x, z)
+        self._move_droppers(moving, scene, frame, heights)
+        contact = scene.wires[0]
+        for i, (head, point) in enumerate(zip(moving["heads"], moving["points"], strict=True)):
+            x = scene.pantograph_x[i, frame]
+            top = float(np.interp(x, contact.x, heights[0])) - 0.06
+            masses = scene.nominal + self.magnified * scene.masses[i][:, frame]
+            below = [z - _MASS_GAP * n - 0.06 for n, z in enumerate(masses) if n]
+            low = scene.nominal - _MASS_GAP * (1.4 + len(masses))
+            head.set_data([x] * (len(below) + 2), [top, *below, low])
+            point.set_data([x], [scene.force[i, frame]])
+        moving["clock"].set_text(f"t = {scene.time[frame]:.2f} s")
+
+    def _move_droppers(self, moving: dict[str, Any], scene: Scene, frame: int, heights: list[Floats]) -> None:
+        ends = np.array(
+            [
+                [np.interp(x, scene.wires[w].x, heights[w]) for w in pair]
+                for x, pair in zip(scene.dropper_x, scene.dropper_ends, strict=True)
+            ]
+        ).reshape(-1, 2)
+        slack = scene.dropper_slack[frame]
+        for name, chosen in (("taut", ~slack), ("slack", slack)):
+            x, z = scene.dropper_x[chosen], ends[chosen]
+            gap = np.full(x.size, np.nan)
+            moving[name].set_data(
+                np.column_stack([x, x, gap]).ravel(), np.column_stack([z[:, 0], z[:, 1], gap]).ravel()
+            )
+
+
+def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Save one picture, shape (height, width, 3). Raises InputError where that cannot be."""
+    from PIL import Image
+
+    try:
+        Image.fromarray(pixels).save(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    except ValueError as error:  # an unknown format
+        raise InputError(f"{path}: {error}") from None
+
+
+def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:
+    from PIL import Image
+
+    first = Image.fromarray(next(pictures))
+    palette = first.quantize(64)
+    rest = (Image.fromarray(p).quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures)
+    palette.save(path, save_all=True, append_images=rest, duration=1000 / rate, loop=0, optimize=False)
+
+
+def _write_mp4(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:
+    try:
+        from imageio_ffmpeg import write_frames
+    except ImportError:
+        raise InputError(
+            f'{path}: MP4 needs the package imageio-ffmpeg: pip install "catenary_fe[film]"; or name a .gif'
+        ) from None
+    path.touch()  # the encoder's own report of a path that cannot be written is a page long
+    first = next(pictures)
+    height, width, _ = first.shape
+    writer = write_frames(str(path), (width, height), fps=rate, quality=7, macro_block_size=2)
+    writer.send(None)
+    for picture in (first, *pictures):
+        writer.send(np.ascontiguousarray(picture))
+    writer.close()

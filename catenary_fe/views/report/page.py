@@ -1,0 +1,103 @@
+"""Puts a report together from pictures, tables and the data of its curves."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.results import Elasticity, Run, criteria_rows
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.system import InputError, Panhead, Pantograph, PowerSystem
+from catenary_fe.views import layout, plan, run_waves
+from catenary_fe.views import run as run_pictures
+from catenary_fe.views.report import series, tables
+from catenary_fe.views.report.html import svg_address, template
+from catenary_fe.views.spectrum import plot_force_spectrum
+from catenary_fe.views.style import new_axes
+
+
+def report_page(
+    run: Run,
+    shape: Shape,
+    elasticity: Elasticity | None = None,
+    *,
+    system: PowerSystem = "AC",
+    filter: FilterKind = "causal",
+) -> str:
+    """HTML of a run's report, complete in itself.
+
+    shape : the static shape that the run started from
+    elasticity : of the line; unset: the report shows none
+    system : whose limits the run is judged by
+    filter : of the contact force's statistics
+
+    The player and the picture of the waves are left out where the run stored no wire shapes.
+    """
+    try:
+        motion = series.motion(run)
+    except InputError:
+        motion = None
+    non_uniformity = elasticity.non_uniformity if elasticity else None
+    rows = criteria_rows(run, system, non_uniformity=non_uniformity, filter=filter)
+    spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
+    content: dict[str, Any] = {
+        "title": run.data.attrs["title"],
+        "speed": f"{3.6 * run.speed:g}",
+        "lead": _lead(run),
+        "versions": json.loads(run.data.attrs["versions"]),
+        "keys": tables.key_figures(run, filter),
+        "criteria": tables.criteria_table(rows, system),
+        "verdict": tables.criteria_in_words(rows),
+        "warnings": run.warnings,
+        "checks": tables.checks_table(run),
+        "motion": motion is not None,
+        "statistics": tables.statistics_table(run, filter),
+        "uplifts": tables.uplift_table(run),
+        "slack": tables.slack_table(run),
+        "schedule": tables.schedule_table(shape, spans if several else spans[:1]),
+        "whole_schedule": tables.schedule_table(shape, None),
+        "inputs": tables.input_tables(run),
+        "pictures": _pictures(run, shape, elasticity, waves=motion is not None),
+        "data": {
+            "force": series.force_chart(run, filter),
+            "uplift": series.uplift_chart(run),
+            "motion": motion,
+        },
+        "footer": "Everything on this page was computed by catenary_fe; how far that can be trusted is in its"
+        " validation report.",
+    }
+    return template("report.html.j2").render(content)
+
+
+def _lead(run: Run) -> str:
+    names = [str(name) for name in run.data["pantograph"].values]
+    whose = f" The figures below are those of {names[0]}." if len(names) > 1 else ""
+    spans = ", ".join(map(str, run.evaluated_spans))
+    return (
+        f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of"
+        f" which {spans} are evaluated; {run.time[-1]:.2f} s simulated.{whose}"
+    )
+
+
+def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: bool) -> dict[str, str]:
+    """Addresses of the pictures by name, the pictures inside them."""
+    pictures = {
+        "force": svg_address(run_pictures.plot_contact_force(run)),
+        "spectrum": svg_address(plot_force_spectrum(run)),
+        "uplift": svg_address(run_pictures.plot_support_uplift(run)),
+        "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
+        "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
+        "shape": svg_address(layout.plot_static_shape(shape, spans=run.evaluated_spans[:2])),
+    }
+    if shape.catenary.is_spatial:
+        heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
+        head = heads[0] if heads else Panhead()
+        pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=head.width))
+    if elasticity:
+        pictures["elasticity"] = svg_address(layout.plot_elasticity(elasticity))
+    if waves:
+        pictures["waves"] = svg_address(
+            run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150
+        )
+    return pictures

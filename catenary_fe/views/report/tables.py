@@ -1,0 +1,286 @@
+"""The tables of a report: words and numbers in display units."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from catenary_fe.equilibrium import Shape
+from catenary_fe.results import Criterion, Run, labels, missed
+from catenary_fe.results.signal import CUT_OFF, FilterKind
+from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of ready texts under named columns."""
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    numeric: Sequence[bool] = field(init=False)
+
+    def __post_init__(self) -> None:
+        columns = zip(*self.rows, strict=True) if self.rows else [()] * len(self.columns)
+        object.__setattr__(self, "numeric", [all(map(_is_number, column)) for column in columns])
+
+
+def _is_number(text: str) -> bool:
+    return not text or (text[-1].isdigit() and text.lstrip("+-−").replace(".", "").isdigit())
+
+
+def key_figures(run: Run, filter: FilterKind) -> list[dict[str, str]]:
+    """The first pantograph's figures to see at one glance, and the largest uplift."""
+    s = run.contact_force_statistics(filter=filter)[0]
+    return [
+        {"name": "mean force", "value": f"{s.mean:.1f} N"},
+        {"name": "standard deviation", "value": f"{s.std:.1f} N"},
+        {"name": "actual minimum, maximum", "value": f"{s.min:.0f}, {s.max:.0f} N"},
+        {"name": "contact loss", "value": f"{100 * s.contact_loss:.2f} %"},
+        {"name": "uplift at a support", "value": f"{1e3 * run.largest_support_uplift():.1f} mm"},
+    ]
+
+
+def statistics_table(run: Run, filter: FilterKind) -> Table:
+    """Statistics of all pantographs over the evaluated spans."""
+    rows = (
+        ("mean force Fₘ (N)", lambda s: f"{s.mean:.1f}"),
+        ("standard deviation σ (N)", lambda s: f"{s.std:.1f}"),
+        ("of which 0 to 5 Hz (N)", lambda s: f"{s.std_0_5:.1f}"),
+        ("of which 5 to 20 Hz (N)", lambda s: f"{s.std_5_20:.1f}"),
+        ("statistical maximum Fₘ + 3σ (N)", lambda s: f"{s.statistical_max:.1f}"),
+        ("statistical minimum Fₘ − 3σ (N)", lambda s: f"{s.statistical_min:.1f}"),
+        ("actual maximum (N)", lambda s: f"{s.max:.1f}"),
+        ("actual minimum (N)", lambda s: f"{s.min:.1f}"),
+        ("contact loss (% of the time)", lambda s: f"{100 * s.contact_loss:.2f}"),
+        ("range of the contact point (mm)", lambda s: f"{1e3 * s.contact_point_range:.1f}"),
+    )
+    found = run.contact_force_statistics(filter=filter)
+    spans = ", ".join(map(str, run.evaluated_spans))
+    caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
+    names = [s.pantograph for s in found]
+    return Table(caption, ("", *names), [(name, *map(text, found)) for name, text in rows])
+
+
+def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
+    """A run's figures against the limits of its system, each with what the limit rests on."""
+    cells = [
+        (label, row.value_text, row.limit_text, row.verdict, row.source)
+        for label, row in zip(labels(rows), rows, strict=True)
+    ]
+    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
+    return Table(f"Limits of {system}", columns, cells)
+
+
+def criteria_in_words(rows: Sequence[Criterion]) -> str:
+    """One sentence that says whether the run is good by its criteria."""
+    judged, misses = [row for row in rows if row.passed is not None], missed(rows)
+    if not misses:
+        return f"All {len(judged)} criteria with a known limit are met."
+    names = ", ".join(dict.fromkeys(row.name for row in misses))
+    return f"{len(misses)} of {len(judged)} criteria are missed: {names}."
+
+
+def checks_table(run: Run) -> Table:
+    """The rules that the program warns by, with this run's numbers."""
+    catenary, settings = run.catenary, json.loads(run.data.attrs["settings"])
+    wave_speed = catenary.contact_wire.wave_speed
+    rows = [
+        ("speed over the contact wire's wave speed", f"{run.speed / wave_speed:.3f}", "at most 0.7"),
+        (
+            "wave ahead of the pantograph at 20 Hz (m)",
+            f"{max(wave_speed - run.speed, 0) / CUT_OFF:.2f}",
+            f"longer than the elements, {settings['mesh']['contact_wire_element']:g} m",
+        ),
+        ("steps in a period of 20 Hz", f"{1 / CUT_OFF / run.step:.0f}", "at least 20"),
+    ]
+    return Table("", ("check", "this run", "rule"), rows)
+
+
+def uplift_table(run: Run) -> Table:
+    """Largest uplift at each support that the train passed."""
+    uplift = 1e3 * run.data["support_uplift"].values
+    evaluated = {s for n in run.evaluated_spans for s in (n - 1, n)}
+    rows = [
+        (str(i + 1), f"{x:g}", f"{uplift[i].max():.1f}", "yes" if i in evaluated else "")
+        for i, x in enumerate(run.data["support_position"].values)
+        if 0 < i < uplift.shape[0] - 1
+    ]
+    return Table("", ("support", "at (m)", "largest uplift (mm)", "of an evaluated span"), rows)
+
+
+def slack_table(run: Run) -> Table:
+    """Droppers that went slack, and for how long."""
+    forces = run.data["dropper_force"].values
+    slack = forces <= 0
+    spans, places = run.data["dropper_span"].values, run.data["dropper_position"].values
+    rows = [
+        (str(spans[i]), f"{places[i]:g}", f"{1e3 * slack[i].sum() * run.step:.0f}", f"{forces[i].max():.0f}")
+        for i in np.flatnonzero(slack.any(axis=1))
+    ]
+    caption = f"{len(rows)} of {places.size} droppers went slack"
+    return Table(caption, ("span", "at (m)", "slack for (ms)", "largest force (N)"), rows)
+
+
+def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
+    """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
+    caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
+    schedule = [row for row in shape.dropper_schedule() if spans is None or row.span in spans]
+    columns = ["span", "at (m)", "length (m)", "installed (m)", "force (N)", "height error (mm)"]
+    rows = [
+        [
+            str(row.span),
+            f"{row.position_m:g}",
+            f"{row.length_m:.4f}",
+            f"{row.installed_length_m:.4f}",
+            f"{row.force_N:.1f}",
+            f"{round(row.contact_wire_height_error_mm, 2) + 0.0:.2f}",
+        ]
+        for row in schedule
+    ]
+    for name, text in (("hangs on", "hangs_on"), ("holds contact wire", "contact_wire")):
+        values = [str(getattr(row, text)) for row in schedule]
+        if len(set(values)) > 1:
+            columns.append(name)
+            for cells, value in zip(rows, values, strict=True):
+                cells.append(value)
+    return Table(f"Dropper schedule, {caption}", columns, rows)
+
+
+def input_tables(run: Run) -> list[Table]:
+    """Everything that the run was computed from, with its sources."""
+    catenary = run.catenary
+    tables = [_line_table(catenary), _wire_table(catenary)]
+    tables += [
+        _pantograph_table(str(name), p)
+        for name, p in zip(run.data["pantograph"].values, run.pantographs, strict=True)
+    ]
+    return [*tables, _settings_table(run)]
+
+
+def _line_table(catenary: Catenary) -> Table:
+    lengths = [span.length for span in catenary.spans]
+    counts = [len(span.droppers) for span in catenary.spans]
+    rows = [
+        ("source", catenary.source or "not given"),
+        ("spans", f"{len(lengths)} of {_range(lengths)} m, {catenary.length:g} m in all"),
+        (
+            "droppers",
+            f"{_range(counts)} in a span, {_range([d.stiffness / 1e3 for d in catenary.droppers])} kN/m",
+        ),
+        ("contact wire height", f"{catenary.contact_wire_height:g} m above the rail"),
+        ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
+        ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_height)} m"),
+        ("steady arms", _arms(catenary)),
+        ("damping of the wires", f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s"),
+        ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
+        *_sideways(catenary),
+    ]
+    return Table("Line", ("", "value"), rows)
+
+
+def _arms(catenary: Catenary) -> str:
+    """Each kind of steady arm once."""
+    kinds = dict.fromkeys(
+        f"links of {arm.length:g} m, {arm.mass_per_length:g} kg/m, clamp {arm.clamp_mass:g} kg"
+        if arm.length is not None
+        else f"springs of {arm.stiffness:g} N/m, {arm.mass:g} kg"
+        for support in catenary.supports[1:-1]
+        if (arm := support.steady_arm)
+    )
+    return "; ".join(kinds) or "none"
+
+
+def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
+    """What leaves the vertical plane, where anything does."""
+    rows = []
+    if np.any(catenary.staggers):
+        rows.append(("stagger", f"{_range(catenary.staggers)} m"))
+    radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
+    if radii:
+        rows.append(("curve radius", f"{_range(radii)} m in {len(radii)} spans"))
+    if catenary.contact_wire_spacing:
+        rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
+    if catenary.stitch_wire:
+        rows.append(("stitch wires", f"{catenary.stitch_wire.length:g} m long"))
+    return rows
+
+
+def _range(values: Any) -> str:
+    """``60`` where all are equal, else ``48 to 60``."""
+    values = np.round(np.asarray(values, dtype=float), 9)
+    if not values.size:
+        return "none"
+    return f"{values[0]:g}" if np.ptp(values) == 0 else f"{values.min():g} to {values.max():g}"
+
+
+def _wire_table(catenary: Catenary) -> Table:
+    wires = {
+        name.replace("_", " "): value
+        for name in type(catenary).model_fields
+        if isinstance(value := getattr(catenary, name), Wire)
+    }
+    quantities = (
+        ("name", lambda w: w.name or "not given"),
+        ("tension (kN)", lambda w: f"{w.tension / 1e3:g}"),
+        ("mass (kg/m)", lambda w: f"{w.mass_per_length:g}"),
+        ("EA (MN)", lambda w: f"{w.axial_stiffness / 1e6:g}"),
+        ("EI (N m²)", lambda w: f"{w.bending_stiffness:g}"),
+        ("wave speed (km/h)", lambda w: f"{3.6 * w.wave_speed:.0f}"),
+        ("source", lambda w: w.source or "not given"),
+    )
+    rows = [(name, *map(text, wires.values())) for name, text in quantities]
+    return Table("Wires", ("", *wires), rows)
+
+
+def _pantograph_table(name: str, pantograph: AnyPantograph) -> Table:
+    rows: list[tuple[str, str]] = [("source", pantograph.source or "not given")]
+    if isinstance(pantograph, Pantograph):
+        rows += [
+            (
+                f"mass {n}{' (head)' if n == 1 else ''}",
+                f"{s.mass:g} kg on {s.stiffness:g} N/m, {s.damping:g} N s/m",
+            )
+            for n, s in enumerate(pantograph.stages, start=1)
+        ]
+        force = pantograph.uplift_force
+        rows.append(
+            ("uplift force", f"{force:g} N")
+            if force is not None
+            else ("mean force to reach", str(pantograph.mean_force))
+        )
+        air = pantograph.aerodynamic_force
+        rows.append(("force of the air", f"{air.quadratic:g} V² + {air.linear:g} V (N, m/s)"))
+        rows.append(
+            (
+                "contact",
+                f"{pantograph.contact_stiffness:g} N/m, {pantograph.contact_damping:g} N s/m, no tension",
+            )
+        )
+    else:
+        law = f"points {list(pantograph.law)}" if pantograph.law else f"{pantograph.force:g} N"
+        rows.append(("force", f"{law}, falling by {pantograph.stiffness:g} N/m"))
+    return Table(f"Pantograph {name}", ("", "value"), rows)
+
+
+def _settings_table(run: Run) -> Table:
+    settings, attrs = json.loads(run.data.attrs["settings"]), run.data.attrs
+    starts = ", ".join(f"{x:g}" for x in run.data["position"].values[:, 0])
+    uplifts = ", ".join(f"{f:.2f}" for f in run.data["uplift_force"].values)
+    rows = [
+        ("method", run.method),
+        ("start at", f"{starts} m"),
+        ("force on the lowest mass", f"{uplifts} N"),
+        *(
+            (f"{kind}: {key.replace('_', ' ')}", f"{value:g}" if isinstance(value, float) else str(value))
+            for kind, values in settings.items()
+            for key, value in values.items()
+        ),
+        ("versions", ", ".join(f"{k} {v}" for k, v in json.loads(attrs["versions"]).items())),
+        ("SHA-256 of the inputs", str(attrs["input_sha256"])),
+    ]
+    return Table("Computation", ("", "value"), rows)

@@ -1,0 +1,73 @@
+"""The documentation's examples, run page by page as they are printed: files are written, commands typed."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = sorted(page for page in DOCS.rglob("*.md") if re.search(r"^```(sh|python)$", page.read_text(), re.M))
+BLOCK = re.compile(r"^```(sh|toml|python)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
+
+def test_there_are_examples():
+    assert len(PAGES) >= 8
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_page(page, tmp_path):
+    here = Path(sys.executable).parent
+    environment = os.environ | {
+        "PATH": f"{here}{os.pathsep}{os.environ['PATH']}",
+        "OPENBLAS_NUM_THREADS": "1",
+    }
+    for number, (language, text) in enumerate(BLOCK.findall(page.read_text(encoding="utf-8"))):
+        if language == "toml":
+            name = re.match(r"# file: (\S+)\n", text)
+            assert name, f"{page}: its first line must name the file"
+            (tmp_path / name[1]).write_text(text, encoding="utf-8")
+            continue
+        if language == "python":
+            (tmp_path / f"example_{number}.py").write_text(text, encoding="utf-8")
+            text = f"python example_{number}.py"
+        done = subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", text],
+            cwd=tmp_path, env=environment, capture_output=True, text=True,
+        )  # fmt: skip
+        assert done.returncode == 0, f"{page}:\n{text}\n{done.stdout}\n{done.stderr}"
+    CLAIMS.get(page.stem, lambda folder: None)(tmp_path)
+
+
+def tutorial(folder):
+    """The numbers that the tutorial names."""
+    import catenary_fe as cf
+
+    first, second, third = (
+        cf.load_run(folder / f"{name}_run" / "run.nc") for name in ("first", "second", "third")
+    )
+    statistics = [run.contact_force_statistics()[0] for run in (first, second, third)]
+    assert [s.std for s in statistics] == pytest.approx([39, 21, 34], abs=1)
+    assert statistics[0].mean == pytest.approx(114, abs=1)
+    assert statistics[0].statistical_min == pytest.approx(-2, abs=1)
+    assert statistics[1].statistical_min == pytest.approx(52, abs=1)
+    assert 1e3 * first.largest_support_uplift() == pytest.approx(79, abs=1)
+    assert second.largest_support_uplift() / first.largest_support_uplift() == pytest.approx(0.5, abs=0.05)
+    assert any("298" in w or "of the contact wire's wave speed" in w for w in first.warnings)
+    assert 0.7 * 3.6 * first.catenary.contact_wire.wave_speed == pytest.approx(298, abs=0.5)
+    assert (folder / "first_run" / "report.html").stat().st_size > 1e6
+
+
+CLAIMS = {"tutorial": tutorial}
+
+
+def test_what_the_pages_say_of_file_sizes():
+    """A run of ten spans at 300 km/h, by the sizes of its arrays; see Films and pictures."""
+    import catenary_fe as cf
+
+    shape = cf.find_form(cf.load_catenary(DOCS.parent / "models" / "layouts" / "en50318_2002.toml"))
+    frames = (shape.catenary.length - 20) / (300 / 3.6) / 0.01
+    wires = 4 * frames * (shape.contact_wire_x.size + shape.messenger_wire_x.size)
+    assert wires / 1e6 == pytest.approx(4, abs=0.6)

@@ -1,0 +1,69 @@
+"""What a report says of its inputs."""
+
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.views.report.tables import Table, _line_table, input_tables, schedule_table, slack_table
+
+
+def rows(table):
+    return {row[0]: row[1:] for row in table.rows}
+
+
+@pytest.mark.parametrize(
+    ("layout", "expected"),
+    [
+        ("en50318_2002", {"modelled": "in the vertical plane", "steady arms": "springs of 300 N/m, 0.3 kg"}),
+        ("en50318_2018_ac_simple", {"modelled": "in space", "stagger": "-0.2 to 0.2 m"}),
+        ("en50318_2018_ac_stitched", {"stitch wires": "18 m long"}),
+        ("dc_3kv_twin", {"contact wires": "two, 0.04 m apart"}),
+    ],
+)
+def test_lines_of_all_kinds(reference_layout, layout, expected):
+    catenary = cf.load_catenary(reference_layout.with_name(f"{layout}.toml"))
+    said = rows(_line_table(catenary))
+    assert {name: said[name][0] for name in expected} == expected
+    assert ("stagger" in said) == catenary.staggers.any()
+
+
+def test_all_inputs_and_sources(short_run):
+    text = "\n".join(str(cell) for t in input_tables(short_run) for row in t.rows for cell in row)
+    for source in (
+        short_run.catenary.source,
+        short_run.catenary.contact_wire.source,
+        short_run.catenary.messenger_wire.source,
+        short_run.pantographs[0].source,
+        short_run.data.attrs["input_sha256"],
+    ):
+        assert source in text
+
+
+def test_slack_droppers(short_run):
+    forces = short_run.data["dropper_force"].values
+    table = slack_table(short_run)
+    assert len(table.rows) == (forces.min(axis=1) <= 0).sum()
+    assert table.caption.startswith(f"{len(table.rows)} of 36")
+    total = sum(float(row[2]) for row in table.rows)
+    assert total == pytest.approx((forces <= 0).sum(), abs=len(table.rows))  # [ms], steps of 1 ms
+
+
+def test_schedule(short_shape):
+    table = schedule_table(short_shape, [3])
+    assert len(table.rows) == 9
+    lengths = [row.length_m for row in short_shape.dropper_schedule() if row.span == 3]
+    assert [float(row[2]) for row in table.rows] == pytest.approx(lengths, abs=5e-5)
+    assert len(table.columns) == 6  # all hang on the one messenger wire and hold the one contact wire
+
+
+def test_schedule_of_a_stitched_twin(reference_layout):
+    twin = cf.load_catenary(reference_layout.with_name("en50318_2018_ac_stitched.toml"))
+    five = twin.replace(spans=twin.spans[:5], supports=twin.supports[:6], evaluated_spans=(3,))
+    table = schedule_table(cf.find_form(five), [3])
+    assert table.columns[-1] == "hangs on"
+    hung = [row[-1] for row in table.rows]
+    assert hung[0] == hung[-1] == "stitch wire"
+    assert set(hung[1:-1]) == {"messenger wire"}
+
+
+def test_numbers_stand_right():
+    assert Table("", ("a", "b"), [("x", "1.5"), ("y", "-2")]).numeric == [False, True]
