@@ -68,16 +68,14 @@ class Columns(NamedTuple):
 class Operator(NamedTuple):
     """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
 
-    lower, upper : L and Lᵀ without their diagonals of ones; like the stiffness, Quads for one lane, else Rows
-    rest : rows that are not empty, with their numbers ``rest_rows``
+    lower, upper : L and Lᵀ without their diagonals of ones; all are Quads for one lane, Rows for eight
     """
 
     lower: Any
     upper: Any
     inverse: Floats
     stiffness: Any
-    rest: Rows
-    rest_rows: Unsigned
+    rest: Any
     beta: float
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import Floats, Quads, Rows, Scheme, Unsigned, Wires
+from catenary_fe.analysis.linear_arrays import Floats, Quads, Rows, Scheme, Wires
 
 
 @compiled
@@ -34,14 +34,14 @@ def predict(scheme: Scheme, beta: float, wires: Wires) -> None:
 
 @compiled
 def take_one(A: Quads, u: Floats, x: Floats) -> None:
-    """x = -A u"""
+    """x -= A u"""
     start, index, value, _ = A
     for k in range(start.size - 1):
-        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        i = 4 * k
+        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
         for m in range(start[k], start[k + 1]):
             p, r = u[index[m]], value[m]
             a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
-        i = 4 * k
         x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
 
 
@@ -82,47 +82,27 @@ def upper_one(U: Quads, inverse: Floats, x: Floats) -> None:
         x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
 
 
-@compiled
-def take_rows(A: Rows, rows: Unsigned, u: Floats, x: Floats) -> None:
-    """x -= A u for a matrix with few rows; shape (rows, lanes) or flat for one lane."""
-    start, index, value = A
-    lanes = u.shape[1]
-    for k in range(rows.size):
-        i = rows[k]
-        for m in range(start[k], start[k + 1]):
-            for c in range(lanes):
-                x[i, c] -= value[m] * u[index[m], c]
-
-
 # eight lanes are written out: so the compiler makes vectors of them
 
 
 @compiled
 def take_eight(A: Rows, u: Floats, x: Floats) -> None:
-    """x = -A u"""
+    """x -= A u"""
     start, index, value = A
     for i in range(x.shape[0]):
-        a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        r = x[i]
+        a, b, c, d, e, f, g, h = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]
         for m in range(start[i], start[i + 1]):
             k, p = value[m], u[index[m]]
             a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
             e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
-        r = x[i]
         r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
 
 
 @compiled
 def lower_eight(L: Rows, x: Floats) -> None:
     """Solve L y = x in place."""
-    start, index, value = L
-    for i in range(x.shape[0]):
-        r = x[i]
-        a, b, c, d, e, f, g, h = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]
-        for m in range(start[i], start[i + 1]):
-            k, p = value[m], x[index[m]]
-            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
-            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
-        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
+    take_eight(L, x, x)  # rows that come before are solved already
 
 
 @compiled

@@ -28,7 +28,6 @@ from catenary_fe.analysis.linear_kernel import (
     predict,
     take_eight,
     take_one,
-    take_rows,
     upper_eight,
     upper_one,
 )
@@ -251,8 +250,9 @@ def _loops(sources: str) -> tuple[Any, Any]:
         steps: int,
     ) -> int:
         for _ in range(steps):
+            flat.x[:] = 0.0
             take_one(operator.stiffness, flat.w, flat.x)
-            take_rows(operator.rest, operator.rest_rows, wires.v, wires.x)
+            take_one(operator.rest, flat.v, flat.x)
             lower_one(operator.lower, flat.x)
             upper_one(operator.upper, operator.inverse, flat.x)
             _finish(scheme, line, wires, heads, work, records)
@@ -272,8 +272,9 @@ def _loops(sources: str) -> tuple[Any, Any]:
         steps: int,
     ) -> int:
         for _ in range(steps):
+            flat.x[:] = 0.0
             take_eight(operator.stiffness, wires.w, wires.x)
-            take_rows(operator.rest, operator.rest_rows, wires.v, wires.x)
+            take_eight(operator.rest, wires.v, wires.x)
             lower_eight(operator.lower, wires.x)
             upper_eight(operator.upper, operator.inverse, wires.x)
             _finish(scheme, line, wires, heads, work, records)

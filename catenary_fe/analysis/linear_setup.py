@@ -90,15 +90,12 @@ def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) 
 def make_operator(setup: Setup, lanes: int) -> Operator:
     """The factors in the form that suits one lane or eight."""
     form = _quads if lanes == 1 else _rows
-    rest = setup.rest
-    filled = np.flatnonzero(np.diff(rest.indptr))
     return Operator(
         lower=form(setup.factor.L, "lower"),
         upper=form(setup.factor.L.T, "upper"),
         inverse=1 / setup.factor.U.diagonal(),
         stiffness=form(setup.stiffness),
-        rest=_rows(rest[filled]),
-        rest_rows=filled.astype(np.uint32),
+        rest=form(setup.rest),
         beta=setup.beta,
     )
 

@@ -148,12 +148,21 @@ def form(
     if as_json:
         print_json(result)
     elif not quiet:
-        columns = ("span", "position m", "hangs on", "length m", "installed m", "force N", "height error mm")
+        where = [key for key in ("hangs_on", "contact_wire") if key in rows[0]] if rows else []
+        columns = (
+            "span",
+            "position m",
+            *(key.replace("_", " ") for key in where),
+            "length m",
+            "installed m",
+            "force N",
+            "height error mm",
+        )
         table = [
             (
                 int(row["span"]),
                 row["position_m"],
-                row["hangs_on"],
+                *(row[key] for key in where),
                 f"{row['length_m']:.4f}",
                 f"{row['installed_length_m']:.4f}",
                 f"{row['force_N']:.1f}",

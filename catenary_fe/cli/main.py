@@ -60,7 +60,7 @@ _SHORT_HELP = {
     static: "Elasticity along the line.",
     modes: "Eigenfrequencies and mode shapes.",
     run: "Run pantographs along a layout.",
-    sweep: "Many runs: speeds, pantographs, values of a layout.",
+    sweep: "Runs over speeds, pantographs and values of a layout.",
     report: "One HTML page of a run, to read and hand on.",
     compare: "Runs side by side: inputs, figures, traces.",
     film: "Film of a run, as GIF or MP4.",

@@ -28,8 +28,8 @@ class DropperRow:
     installed_length_m : under its load
     force_N : tension
     contact_wire_height_error_mm : of the contact wire at this dropper, above its design height
-    hangs_on : "messenger wire" or "stitch wire"
-    contact_wire : number of the contact wire that it holds, of two 1 is the right one
+    hangs_on : "messenger wire" or "stitch wire", on a line that has both
+    contact_wire : number of the contact wire that it holds, of two: 1 is the right one
     """
 
     span: int
@@ -38,12 +38,12 @@ class DropperRow:
     installed_length_m: float
     force_N: float  # noqa: N815 the unit's own letter
     contact_wire_height_error_mm: float
-    hangs_on: str
-    contact_wire: int
+    hangs_on: str | None = None
+    contact_wire: int | None = None
 
     def as_dict(self) -> dict[str, float | str]:
-        """The row as plain numbers by column name."""
-        return asdict(self)
+        """The row by column name; what the line leaves no choice in is left out."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -180,13 +180,17 @@ class Shape:
                 installed_length_m=float(self.installed_lengths[i]),
                 force_N=float(self.dropper_forces[i]),
                 contact_wire_height_error_mm=1e3 * float(self.height_errors[i]),
-                hangs_on="stitch wire"
-                if self.mesh.upper.wire[i] >= self.mesh.first_stitch
-                else "messenger wire",
-                contact_wire=int(self.mesh.lower.wire[i]) + 1,
+                hangs_on=self._hangs_on(i),
+                contact_wire=int(self.mesh.lower.wire[i]) + 1 if self.mesh.contact_wires > 1 else None,
             )
             for i, dropper in enumerate(self.catenary.droppers)
         ]
+
+    def _hangs_on(self, dropper: int) -> str | None:
+        if not self.stitch_wires:
+            return None
+        on_stitch = self.mesh.upper.wire[dropper] >= self.mesh.first_stitch
+        return "stitch wire" if on_stitch else "messenger wire"
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the static shape, heights exaggerated. See :func:`catenary_fe.views.plot_static_shape`."""

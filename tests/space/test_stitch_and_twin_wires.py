@@ -71,6 +71,7 @@ def test_stitch_wires_that_meet_are_refused(stitched):
 def test_twins_share_the_droppers(twin, twin_shape):
     rows = twin_shape.dropper_schedule()
     assert [r.contact_wire for r in rows[:4]] == [1, 2, 1, 2]
+    assert "hangs_on" not in rows[0].as_dict()
     right, left = twin_shape.contact_wires
     apart = left.lateral(np.array([54.0, 81.0])) - right.lateral(np.array([54.0, 81.0]))
     # each dropper leans by 20 mm and draws its wire in: 1 N every 7 m bends it by 6 mm
