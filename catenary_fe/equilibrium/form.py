@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 
 HEIGHT_TOLERANCE = 1e-4  # [m] of the contact wire at the droppers
 _SETTLED = 1e-6  # [m] change from pass to pass, where form finding ends
-_PASSES = 25  # in the plane three are enough, in space about eight
+_PASSES = 80  # in the plane three are enough, in space about eight, more where stitch wires are loose
 
 
 def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
