@@ -188,8 +188,11 @@ def _stations(fixed: Floats, settings: MeshSettings, largest: float) -> Floats:
 def _graded(length: float, first: float, growth: float, largest: float) -> Floats:
     """Stations from 0 to short of ``length``, symmetric, elements growing from both ends."""
     half: list[float] = []
-    while sum(half) + (size := min(first * growth ** len(half), largest)) < length / 2:
+    size, reach = first, first
+    while reach < length / 2:
         half.append(size)
+        size = min(size * growth, largest)
+        reach += size
     if half and length - 2 * sum(half) < half[-1]:
         half.pop()  # what is left in the middle must not be a sliver
     rest = length - 2 * sum(half)

@@ -8,6 +8,8 @@ import numpy as np
 
 from catenary_fe.system import InputError
 
+SHORTEST_STEP = 1e-6  # [s] below it a run takes weeks, and its histories more memory than there is
+
 
 @dataclass(frozen=True, kw_only=True)
 class TimeSettings:
@@ -25,8 +27,10 @@ class TimeSettings:
     spectral_radius: float = 0.9
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and 0 < self.step <= 0.02):
-            raise InputError(f"time step = {self.step!r} s: must lie between 0 and 0.02 s; 0.001 is usual")
+        if not (np.isfinite(self.step) and SHORTEST_STEP <= self.step <= 0.02):
+            raise InputError(
+                f"time step = {self.step!r} s: must lie between {SHORTEST_STEP:g} and 0.02 s; 0.001 is usual"
+            )
         if not 0 < self.tolerance <= 1e-2:
             raise InputError(f"tolerance = {self.tolerance!r}: must lie between 0 and 0.01")
         if not 0 <= self.spectral_radius <= 1:

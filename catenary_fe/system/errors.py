@@ -19,8 +19,8 @@ class InputError(CatenaryError, ValueError):
     exit_code = 3
 
     def __init__(self, *problems: str) -> None:
-        self.problems = problems
-        super().__init__("\n".join(problems))
+        self.problems = tuple(" ".join(line.splitlines()) for line in problems)  # names may have line breaks
+        super().__init__("\n".join(self.problems))
 
 
 class SolverError(CatenaryError, RuntimeError):

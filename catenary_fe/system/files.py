@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -12,12 +13,22 @@ from catenary_fe.system import library
 from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
-from catenary_fe.system.parameters import NonEmpty, Number, Parameters, Positive, Text, problem_lines
+from catenary_fe.system.parameters import (
+    NonEmpty,
+    Number,
+    Parameters,
+    Positive,
+    Text,
+    problem_lines,
+    shorten,
+)
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
+MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
+MOST_DROPPERS = 200_000  # of a line, likewise
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -65,7 +76,7 @@ class DropperEntry(Dropper):
         if isinstance(data, int | float):
             return {"position": data}
         if not isinstance(data, dict):
-            raise ValueError(f"{data!r} is neither a position in metres nor a table")
+            raise ValueError(f"{shorten(data)} is neither a position in metres nor a table")
         return data
 
 
@@ -141,6 +152,7 @@ class LayoutFile(Parameters):
 
     def catenary(self) -> Catenary:
         """The catenary that the file describes. Raises InputError."""
+        self._check_size()
         spans = tuple(span for entry in self.span for span in (self._span(entry),) * entry.count)
         supports, faults = self._all_supports(len(spans) + 1)
         try:
@@ -164,6 +176,16 @@ class LayoutFile(Parameters):
         if faults:
             raise InputError(*faults)
         return catenary
+
+    def _check_size(self) -> None:
+        """Raises InputError before a slip in a count fills the memory."""
+        spans = sum(entry.count for entry in self.span)
+        droppers = sum(entry.count * len(entry.droppers) for entry in self.span)
+        for count, what, most in ((spans, "spans", MOST_SPANS), (droppers, "droppers", MOST_DROPPERS)):
+            if count > most:
+                raise InputError(
+                    f"span: {count:,} {what} in all: must be at most {most:,}; look at the counts"
+                )
 
     def _all_supports(self, count: int) -> tuple[tuple[Support, ...], list[str]]:
         """The common support with the differing ones in their places, and what is wrong with those."""
@@ -242,7 +264,7 @@ def load_pantograph(name_or_path: str | Path) -> Pantograph:
     Raises InputError, one line for each fault that the file has, or the near names of the library.
     """
     path = Path(name_or_path)
-    if path.suffix == ".toml" or path.is_file():
+    if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
         return _read(path, Pantograph, "pantograph")
     return library.pantograph(str(name_or_path))
 
@@ -265,15 +287,27 @@ def _read(path: Path, model: type[_Model], kind: str) -> _Model:
 
 
 def _read_toml(path: Path, kind: str) -> dict[str, Any]:
+    content = _read_bytes(path, kind)
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
-        return tomllib.loads(path.read_bytes().decode("utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
+        return tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a text in UTF-8 (byte {error.start}); save it as UTF-8") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except RecursionError:
+        raise InputError(f"{path}: not a TOML file: lists or tables too deep inside one another") from None
+    except ValueError as error:  # of TOML, and of whole numbers of thousands of digits
         raise InputError(f"{path}: not a TOML file: {error}") from None
+
+
+def _read_bytes(path: Path, kind: str) -> bytes:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)  # devices and pipes have no size, nor need they end
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise InputError(f"{str(path)!r}: no file can have this name; check it") from None
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
+    return content

@@ -8,7 +8,15 @@ from typing import Annotated, Literal, Self, get_args
 from pydantic import field_validator, model_validator
 
 from catenary_fe.system.current_collection import MeanForceRule, target_mean_force
-from catenary_fe.system.parameters import NonEmpty, NonNegative, Number, Parameters, Positive, Text
+from catenary_fe.system.parameters import (
+    NonEmpty,
+    NonNegative,
+    Number,
+    Parameters,
+    Positive,
+    Text,
+    shorten,
+)
 
 
 class Stage(Parameters):
@@ -97,7 +105,7 @@ class Pantograph(Parameters):
         if value is None or (is_number and value > 0) or value in get_args(MeanForceRule):  # type: ignore[operator]
             return value
         rules = ", ".join(f"'{rule}'" for rule in get_args(MeanForceRule))
-        raise ValueError(f"{value!r} is neither a force above 0 N nor one of {rules}")
+        raise ValueError(f"{shorten(value)} is neither a force above 0 N nor one of {rules}")
 
     @model_validator(mode="after")
     def _one_force(self) -> Self:

@@ -12,10 +12,21 @@ from pydantic_core import ErrorDetails
 from catenary_fe.system.errors import InputError
 
 GRAVITY = 9.81  # [m/s²]
+LARGEST = 1e15  # in SI units: beyond it, and below its inverse, products of some leave the range of floats
+SMALLEST = 1 / LARGEST
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
-NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+
+def _not_tiny(value: float) -> float:
+    if value < SMALLEST:
+        raise ValueError(f"{value!r} is below {SMALLEST:g}; look for a wrong unit")
+    return value
+
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[
+    float, Field(strict=True, allow_inf_nan=False, gt=0, le=LARGEST), AfterValidator(_not_tiny)
+]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Text = Annotated[str, Field(strict=True)]
 
 
@@ -104,16 +115,17 @@ def _problem_line(detail: ErrorDetails, model: type[BaseModel]) -> str:
         text = str(detail["ctx"]["error"])
         return f"{place}: {text}" if place else text
     if kind in ("model_type", "dict_type", "model_attributes_type"):
-        return f"{place} = {_shorten(value)}: must be a table of its own keys; {_suggest([*path, ''], model)}"
+        return f"{place} = {shorten(value)}: must be a table of its own keys; {_suggest([*path, ''], model)}"
     rule = detail["msg"].removeprefix("Input should be ").replace("a valid ", "a ")
     for pydantics, ours in _WORDS.items():
         rule = rule.replace(pydantics, ours)
-    return f"{place} = {_shorten(value)}: must be {rule}" + (f"; it is {hint}" if hint else "")
+    return f"{place} = {shorten(value)}: must be {rule}" + (f"; it is {hint}" if hint else "")
 
 
 _WORDS = {
     "greater than or equal to": "at least",
     "less than or equal to": "at most",
+    f"{LARGEST:.0f}": f"{LARGEST:g}",
     "a string": "a text",
     "a integer": "a whole number",
     "a tuple": "a list",
@@ -137,12 +149,17 @@ def _place(path: list[int | str]) -> str:
         if isinstance(part, int):
             words += f" {part + 1}:"
         else:
-            words += (" " if words.endswith(":") else "." if words else "") + part
+            name = part if part.isprintable() and len(part) <= 60 else shorten(part)
+            words += (" " if words.endswith(":") else "." if words else "") + name
     return words.strip().removesuffix(":")
 
 
-def _shorten(value: Any) -> str:
-    text = repr(value)
+def shorten(value: Any) -> str:
+    """A value as an error shows it, at most 60 characters in one line."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # Python refuses to write very long integers and very deep tables
+        text = "a whole number of thousands of digits" if isinstance(value, int) else "a very deep table"
     return text if len(text) <= 60 else text[:57] + "..."
 
 

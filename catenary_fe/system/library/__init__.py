@@ -12,7 +12,7 @@ from typing import Any
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
-from catenary_fe.system.parameters import Number, Parameters, Positive, Text
+from catenary_fe.system.parameters import Number, Parameters, Positive, Text, shorten
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
@@ -119,4 +119,6 @@ def _find(kind: str, name: str) -> dict[str, Any]:
         return {**records[known], "name": known}
     near = [folded[n] for n in difflib.get_close_matches(name.casefold(), folded, n=3, cutoff=0.4)]
     listed = ", ".join(f"'{n}'" for n in near or records)
-    raise InputError(f"no {kind} '{name}' in the library; {'near' if near else 'known'} names: {listed}")
+    raise InputError(
+        f"no {kind} {shorten(name)} in the library; {'near' if near else 'known'} names: {listed}"
+    )
