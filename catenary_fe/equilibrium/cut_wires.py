@@ -12,7 +12,7 @@ from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import curve_pulls, element_pulls
 from catenary_fe.fe.single_wire import At, Cut, WireStatics, solve_wire
 from catenary_fe.fe.wire import WireLine
-from catenary_fe.system import GRAVITY, Catenary, SteadyArm, Wire
+from catenary_fe.system import GRAVITY, Catenary, SolverError, SteadyArm, Wire
 
 Floats = NDArray[np.float64]
 _ANCHORS = 0, -1  # a line's first and last support hold the contact wire
@@ -184,9 +184,18 @@ class CutWires:
 
 
 def straightened(wire: Wire, x: Floats, statics: WireStatics, pulls: Floats) -> WireLine:
-    """The line that was found, with the nodes back at their stations: clamps sit where they are wanted."""
+    """The line that was found, with the nodes back at their stations: clamps sit where they are wanted.
+
+    Raises SolverError where the wire hangs so low that it folds back.
+    """
     from scipy.interpolate import CubicHermiteSpline
 
     found = statics.points
+    forward = np.diff(found[:, 0]) > 0
+    if not forward.all() or not np.isfinite(found).all():
+        raise SolverError(
+            f"form finding: a wire under {wire.tension:g} N hangs so low that it folds back, near"
+            f" {x[int(forward.argmin())]:.1f} m along the line; look for too little tension"
+        )
     curve = CubicHermiteSpline(found[:, 0], found[:, 1:], statics.inclinations, extrapolate=True)
     return WireLine.through(wire, np.column_stack([x, curve(x)]), curve(x, 1), pulls)

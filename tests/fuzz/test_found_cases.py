@@ -88,3 +88,18 @@ def test_line_breaks_in_a_name_stay_in_one_line(reference_layout, tmp_path):
     record["contact_wire"]["library"] = "name\nsecond line"
     path.write_text(document(record))
     assert "no wire 'name\\nsecond line' in the library" in fault(cf.load_catenary, path)
+
+
+def test_a_messenger_wire_that_hardly_anything_pulls(reference_layout, tmp_path):
+    """It folded back on itself, and the spline through it raised."""
+    path = tmp_path / "slack.toml"
+    record = layouts(reference_layout.parent)[0]
+    record["messenger_wire"]["tension"] = 0.011
+    record["support"]["messenger_stiffness"] = 500.0
+    record["span"] = [
+        {"count": 2, "length": 60.0, "pre_sag": 0.02, "droppers": [5.0, 17.0, 30.0, 43.0, 55.0]}
+    ]
+    path.write_text(document(record))
+    code, out, err = call("form", path, "--json")
+    assert (code, out) == (4, "")
+    assert "hangs so low that it folds back" in err
