@@ -7,6 +7,7 @@ a table.
 
 from catenary_fe.results.criteria import Criterion, criteria_rows, labels, missed
 from catenary_fe.results.elasticity import Elasticity
+from catenary_fe.results.guards import Check, run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
 from catenary_fe.results.run import Run, load_run
@@ -15,6 +16,7 @@ from catenary_fe.results.statistics import ForceStatistics, force_statistics
 from catenary_fe.results.wires import WireHistory
 
 __all__ = [
+    "Check",
     "Criterion",
     "Elasticity",
     "ForceStatistics",
@@ -31,5 +33,6 @@ __all__ = [
     "load_run",
     "low_pass",
     "missed",
+    "run_checks",
     "spectrum",
 ]

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.guards import Check, run_checks
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
 from catenary_fe.results.wires import WireHistory, wire_histories
@@ -64,10 +66,16 @@ class Run:
         """Numbers of the spans (from 1) that statistics are taken over."""
         return tuple(json.loads(self.data.attrs["evaluated_spans"]))
 
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The physics guards, each with value and bound. See :mod:`catenary_fe.results.guards`."""
+        return run_checks(self)
+
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the program warned of before and after the run."""
-        return tuple(json.loads(self.data.attrs["warnings"]))
+        """What the program warned of before the run, and the checks that it failed."""
+        failed = [f"check failed: {check}" for check in self.checks if not check.passed]
+        return (*json.loads(self.data.attrs["warnings"]), *failed)
 
     @property
     def time(self) -> Floats:
@@ -146,6 +154,7 @@ class Run:
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
+            "checks": [check.as_dict() for check in self.checks],
             "warnings": list(self.warnings),
         }
 
