@@ -18,6 +18,7 @@ from catenary_fe.cli.report import report
 from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
+from catenary_fe.cli.selfcheck import selfcheck
 from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
@@ -70,6 +71,7 @@ _SHORT_HELP = {
     rerun: "Repeat a run from its folder.",
     paper: "The figures of the paper, computed and drawn.",
     validate: "Computed beside reference values.",
+    selfcheck: "Whether this installation computes what it should.",
     schema: "JSON Schema of layout and pantograph files.",
     completion: "Completion script for the shell.",
 }
