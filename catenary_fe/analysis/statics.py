@@ -48,13 +48,15 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
     model = loaded.model
     shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
     up, contact, messenger = model.axes - 1, shapes[0], shapes[shape.mesh.contact_wires]
+    dropper_forces = model.dropper_forces()
+    loaded.release()
     return StaticState(
         contact_wire_x=contact[:, 0],
         contact_wire_z=contact[:, up],
         messenger_wire_x=messenger[:, 0],
         messenger_wire_z=messenger[:, up],
         contact_wire_uplift=contact[:, up] - shape.contact_wire_z,
-        dropper_forces=model.dropper_forces(),
+        dropper_forces=dropper_forces,
     )
 
 

@@ -21,7 +21,7 @@ from catenary_fe.equilibrium.shape import HangingWire, Shape
 from catenary_fe.fe.mesh import Mesh, MeshSettings, make_mesh
 from catenary_fe.fe.model import Installation, Model, build_model, wire_kinds
 from catenary_fe.fe.single_wire import WireStatics
-from catenary_fe.fe.solver import solve_static
+from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.fe.wire import WireLine
 from catenary_fe.system import GRAVITY, Catenary, SolverError
 
@@ -162,6 +162,7 @@ def _settle(model: Model, installation: Installation, pulls: Sequence[Floats]) -
     for (i, axis), constraint in model.held.supports.items():
         support_forces[i, axis - 1] = model.held_force(constraint)
         _stay(lines[messenger], installation.lines[messenger], int(mesh.messenger.supports[i]), axis)
+    release(model.mbs)
     arm_forces[:, [0, -1]] = 0.0  # the wires' anchors
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         arm = support.steady_arm
@@ -203,12 +204,14 @@ def _shape(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation
     wires = tuple(HangingWire.from_coordinates(q) for q in shapes)
     points = np.concatenate([q[:, : model.axes] for q in shapes])
     spread = points[nodes.nodes(nodes.upper)] - points[nodes.nodes(nodes.lower)]
+    dropper_forces = model.dropper_forces()
+    release(model.mbs)
     return Shape(
         catenary=catenary,
         mesh_settings=settings,
         mesh=nodes,
         installation=installation,
         wires=wires,
-        dropper_forces=model.dropper_forces(),
+        dropper_forces=dropper_forces,
         installed_lengths=np.linalg.norm(spread, axis=1),
     )

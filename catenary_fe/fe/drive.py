@@ -14,7 +14,7 @@ from catenary_fe.fe.energy import EnergyMeter
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
-from catenary_fe.fe.solver import solve_dynamic, solve_static
+from catenary_fe.fe.solver import release, solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.wire import hermite
 from catenary_fe.system import AnyPantograph, Catenary
@@ -113,6 +113,7 @@ def drive(
     mbs.SetPreStepUserFunction(before_step)
     solve_dynamic(mbs, steps=trip.steps, time=trip.time, what=f"run at {3.6 * trip.speed:g} km/h")
     recorder.record(trip.steps)
+    release(mbs)
     return recorder.journey()
 
 

@@ -27,7 +27,7 @@ from catenary_fe.fe.model import (
     element_pulls,
     point_masses,
 )
-from catenary_fe.fe.solver import solve_static
+from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.fe.wire import ALONG
 from catenary_fe.system import Catenary
 
@@ -118,6 +118,8 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     T, place = _kept(model, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
     width, up = model.node_width, model.axes - 1
+    contacts = _contact_lines(model, place)
+    release(mbs)
     return LinearModel(
         mass=M,
         stiffness=K,
@@ -126,7 +128,7 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
         dropper_stiffness=stiffness,
         dropper_damping=damping,
         dropper_tension=tension,
-        contacts=_contact_lines(model, place),
+        contacts=contacts,
         heights=place[width * np.arange(mesh.first_nodes[-1]) + up],
         tensions=place[whole:],
         rest_tension=np.concatenate([w.tension for w in wires]),

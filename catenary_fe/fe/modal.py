@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses
-from catenary_fe.fe.solver import solve_static
+from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import Catenary, InputError, SolverError
 
 Floats = NDArray[np.float64]
@@ -83,6 +83,7 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
     K = K + _droppers(model, droppers) + spring_values(model, "stiffness") + link_stiffness(model)
     T = transformation(model)
     M, K, D = (T.T @ matrix @ T for matrix in (M, K, D))
+    release(mbs)
     return LinearSystem(M, K, D, T, model.node_width)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.overlay import Overlay, add_overlay
-from catenary_fe.fe.solver import new_system, solve_static
+from catenary_fe.fe.solver import new_system, release, solve_static
 from catenary_fe.fe.wire import WireLine, add_ground_coordinate, add_wire, anchor_and_tension, hold
 from catenary_fe.system import Wire
 
@@ -90,4 +90,5 @@ def solve_wire(wire: Wire, line: WireLine, cut: Cut, *, what: str) -> WireStatic
         at: float(mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
         for at, constraint in constraints.items()
     }
+    release(mbs)
     return WireStatics.from_coordinates(q, reactions)

@@ -20,6 +20,14 @@ def new_system() -> exu.MainSystem:
     return system
 
 
+def release(system: exu.MainSystem) -> None:
+    """Free a system's memory; nothing of it may be used afterwards.
+
+    A system holds its container and the container the system: no garbage collection frees that ring.
+    """
+    system.variables.pop("container").Reset()
+
+
 def solve_static(mbs: exu.MainSystem, *, what: str) -> None:
     """Solve for static equilibrium in one load step and make the result the initial state.
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.contact import locate
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model
-from catenary_fe.fe.solver import solve_static
+from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import Catenary
 
 Floats = NDArray[np.float64]
@@ -58,6 +58,10 @@ class LoadedCatenary:
         solve_static(mbs, what=f"static load ({what})")
         return self.heights(positions)
 
+    def release(self) -> None:
+        """Free the model's memory; it must not be used any more."""
+        release(self.model.mbs)
+
     def heights(self, positions: Sequence[float] | Floats) -> Floats:
         """[m] of the contact wire at positions [m] along the track; of two wires, their mean."""
         output, position = self.model.mbs.GetObjectOutputBody, exu.OutputVariableType.Position
@@ -84,4 +88,5 @@ def lift_curve(
         lifts[i] = loaded.solve([x], [force])[0] - before[i]
         if progress:
             progress((i + 1) / positions.size)
+    loaded.release()
     return lifts

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.laws import dropper_function
-from catenary_fe.fe.solver import solve_dynamic
+from catenary_fe.fe.solver import release, solve_dynamic
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_velocity
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem
@@ -82,6 +82,7 @@ def run_pair(pair: WirePair, *, duration: float, time: TimeSettings) -> PairMoti
     solve_dynamic(mbs, steps=steps, time=time, what="two wires")
     record(steps)
     motions = [recorder.motion(time.step) for recorder in recorders]
+    release(mbs)
     return PairMotion(motions[0], motions[1], force)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.energy import EnergyMeter
-from catenary_fe.fe.solver import solve_dynamic
+from catenary_fe.fe.solver import release, solve_dynamic
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_velocity
 from catenary_fe.fe.wire_loads import WireLoad, WireTrack, add_load
@@ -72,7 +72,9 @@ def run_wire(
     mbs.SetPreStepUserFunction(before_step)
     solve_dynamic(mbs, steps=steps, time=time, what="wire")
     recorder.record(steps)
-    return recorder.motion(time.step)
+    motion = recorder.motion(time.step)
+    release(mbs)
+    return motion
 
 
 def _steps(name: str, value: float, step: float) -> int:
