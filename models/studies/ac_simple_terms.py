@@ -115,8 +115,8 @@ HEADING = """# EN 50318:2018 AC simple: what each term moves
 
 275 km/h, spans 6 to 15 of 20, causal 20 Hz filter; the uplift is set for F_m = 0.00097 v² + 70 N in the first
 row, and kept. Linearised runs, which the validation report puts beside a nonlinear one; written by
-`models/studies/ac_simple_terms.py`. Bold: outside the accepted ranges, which were recalled. The last column is
-how much longer the droppers of a span come out than the published lengths, from the outer to the middle one."""
+`models/studies/ac_simple_terms.py`. Bold: outside the accepted ranges, which were recalled. The last column
+is how much longer a span's droppers come out than the published lengths, from the outer to the middle one."""
 
 CONCLUSION = """![σ of each variant](ac_simple_terms.png)"""
 
