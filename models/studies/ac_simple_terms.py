@@ -125,10 +125,10 @@ CONCLUSION = """![σ of each variant](ac_simple_terms.png)
 - Mesh, step, filter and evaluated spans move σ by less than the model's data do: numerics are not it.
 - What would bring σ inside, each by itself: arms or clamps without mass, softer droppers, a messenger support
   of 50 kN/m, β = 5e-4 s, a contact of 200 kN/m or a little contact damping. None is what the sources say.
-- The published dropper lengths are met within 5 mm, instead of 12 to 23 mm, if the arms carry no weight of the
-  wire and the droppers hang upright (the messenger wire above the contact wire); 2.7 mm of the rest is the
-  support's spring under 1360 N. So the statics of the standard speak for level arms. The dynamics do not: σ
-  and the maximum then move away from the ranges. Ranges and data that disagree here were both partly recalled.
+- The published dropper lengths are met within 5 mm, instead of 12 to 23 mm, if the arms carry no weight of
+  the wire and the droppers hang upright (the messenger wire above the contact wire); 2.7 mm of the rest is
+  the support's spring under 1360 N. So the statics of the standard speak for level arms. The dynamics do
+  not: σ and the maximum then move away from the ranges. Data and ranges here were both partly recalled.
 - The pre-sag decides most: without it the low frequencies halve."""
 
 
