@@ -162,7 +162,7 @@ def draw(data: RunData, figure: Figure) -> None:
         right.plot((linear - middle) / half, i, "k|", markersize=11, label=None if i else "linearised run")
     names = [f"{name}\n{low:g} to {high:g} {unit}" for name, unit, low, high in RANGES]
     right.set_yticks(range(len(RANGES)), names, fontsize=7)
-    label(right, "place in the accepted range (recalled): −1 lower, 1 upper end", "")
+    label(right, "place in the recalled range: −1 lower, 1 upper end", "")
     right.set_xlim(-1.8, 1.8)
     right.set_ylim(len(RANGES) - 0.4, -1.3)
     right.legend(fontsize=7, loc="upper right", ncols=2)
