@@ -40,8 +40,8 @@ def solve_one_way(spring: float, damper: float, cs: float, cd: float) -> float:
 
 
 @compiled
-def place_contact(line: Line, heads: Heads, work: Work, c: int, j: int, position: float) -> None:
-    """Shape functions, and how wire and head give, at a contact."""
+def weigh_contact(line: Line, heads: Heads, work: Work, c: int, j: int, position: float) -> tuple[int, float]:
+    """Shape functions at a contact; the number of the element's first node, and the place to the left at rest."""
     begin, end = line.first[heads.wire[c, j]], line.first[heads.wire[c, j] + 1]
     e = begin + int(np.searchsorted(line.x[begin:end], position, side="right")) - 1
     e = min(max(e, begin), end - 2)
@@ -57,15 +57,24 @@ def place_contact(line: Line, heads: Heads, work: Work, c: int, j: int, position
     rise[2] = -rise[0]
     rise[3] = length * (3 * xi**2 - 2 * xi) / width
     shape[4], rise[4], lateral = 0.0, 0.0, 0.0
-    low, high, size = FAR, 0, line.give.value.shape[1]
     for m in range(4):
         node, which = e + m // 2, m % 2
         shape[4] += shape[m] * line.static[node, which]
         rise[4] += rise[m] * line.static[node, which]
         lateral += shape[m] * line.lateral[node, which]
         at[m] = line.at[node, which]
+    return e, lateral
+
+
+@compiled
+def place_contact(line: Line, heads: Heads, work: Work, c: int, j: int, position: float) -> None:
+    """Shape functions, and how wire and head give, at a contact."""
+    e, lateral = weigh_contact(line, heads, work, c, j, position)
+    shape, at = work.shape[c, j], work.at[c, j]
+    low, high, size = FAR, 0, line.give.value.shape[1]
+    for m in range(4):
         if at[m] >= 0:
-            begin = line.give.first[line.column[node, which]]
+            begin = line.give.first[line.column[e + m // 2, m % 2]]
             low, high = min(low, begin), max(high, begin + size)
     work.first[c, j], work.width[c, j] = low, high - low
     column = work.column[c, j, : high - low]

@@ -46,10 +46,10 @@ def take_one(A: Quads, u: Floats, x: Floats) -> None:
 
 
 @compiled
-def lower_one(L: Quads, x: Floats) -> None:
-    """Solve L y = x in place."""
+def lower_one(L: Quads, x: Floats, first: int, last: int) -> None:
+    """Solve L y = x in place; for the groups of four rows from ``first`` to before ``last``."""
     start, index, value, inner = L
-    for k in range(start.size - 1):
+    for k in range(first, last):
         i = 4 * k
         a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
         for m in range(start[k], start[k + 1]):
@@ -63,12 +63,11 @@ def lower_one(L: Quads, x: Floats) -> None:
 
 
 @compiled
-def upper_one(U: Quads, inverse: Floats, x: Floats) -> None:
-    """Solve diag(1 / inverse) Lᵀ y = x in place."""
+def upper_one(U: Quads, inverse: Floats, x: Floats, first: int, last: int) -> None:
+    """Solve diag(1 / inverse) Lᵀ y = x in place; for the groups from ``last`` - 1 down to ``first``."""
     start, index, value, inner = U
-    groups = start.size - 1
-    for n in range(groups):
-        k = groups - 1 - n
+    for n in range(last - first):
+        k = last - 1 - n
         i = 4 * k
         a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
         a, b, c, d = a * inverse[i], b * inverse[i + 1], c * inverse[i + 2], d * inverse[i + 3]

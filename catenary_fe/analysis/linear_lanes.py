@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +30,7 @@ from catenary_fe.analysis.linear_kernel import (
     upper_eight,
     upper_one,
 )
+from catenary_fe.analysis.linear_records import Sizes, load_heads, make_heads, make_records, read_journey
 from catenary_fe.analysis.linear_setup import Setup, make_operator
 from catenary_fe.analysis.linear_start import Start
 from catenary_fe.equilibrium import Shape
@@ -40,17 +40,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 BLOCK = 250  # steps between looks at which lanes are free
-
-
-@dataclass(frozen=True)
-class Sizes:
-    """The most that any run of a batch needs."""
-
-    pantographs: int
-    contacts: int
-    coordinates: int
-    steps: int
-    shapes: int = 0
 
 
 class Lanes:
@@ -63,7 +52,7 @@ class Lanes:
         self._setup, self.count = setup, lanes
         self._operator = make_operator(setup, lanes) if COMPILED else None
         self.wires = Wires(*(np.zeros((n, lanes)) for _ in range(5)))
-        self.heads = _heads(lanes, sizes, setup.nominal)
+        self.heads = make_heads(lanes, sizes, setup.nominal)
         width = 2 * line.give.value.shape[1]
         self.work = Work(
             force=np.zeros((lanes, j)),
@@ -79,67 +68,20 @@ class Lanes:
             head=np.zeros((lanes, j, m)),
             soft=np.zeros((lanes, j, m)),
         )
-        t = sizes.steps + 1
-        self.records = Records(
-            force=np.zeros((lanes, j, t)),
-            height=np.zeros((lanes, j, t)),
-            masses=np.zeros((lanes, p, m, t)),
-            droppers=np.zeros((lanes, line.k.size, t)),
-            supports=np.zeros((lanes, line.supports.size, t)),
-            share=np.zeros((lanes, t)),
-            slack=np.zeros((lanes, t)),
-            wire=np.zeros((lanes, sizes.shapes, line.heights.size)),
-            every=every,
-        )
+        self.records = make_records(lanes, sizes, (line.k.size, line.supports.size, line.heights.size), every)
 
     def load(self, lane: int, start: Start, steps: int) -> None:
         """Put a run at its start into a lane."""
-        scheme, heads, records = self._setup.scheme, self.heads, self.records
         zero = np.zeros_like(start.q)
         # at rest q* = q and v* = 0
         for array, values in zip(self.wires, (start.q, zero, zero, zero, start.q), strict=True):
             array[:, lane] = values
-        for array in (
-            heads.q,
-            heads.v,
-            heads.c,
-            heads.x,
-            heads.K,
-            heads.D,
-            heads.inverse,
-            heads.load,
-            heads.heave,
-            heads.roll,
-        ):
-            array[lane] = 0.0
-        heads.owner[lane], self.work.active_count[lane] = -1, 0
-        j = 0
-        for p, chain in enumerate(start.chains):
-            m = chain.q.size
-            heads.q[lane, p, :m] = chain.q
-            heads.K[lane, p, :m, :m], heads.D[lane, p, :m, :m] = chain.K, chain.D
-            heads.inverse[lane, p, :m, :m] = np.linalg.inv(chain.M + scheme.g * chain.D + scheme.b * chain.K)
-            heads.load[lane, p, :m] = chain.uplift * chain.load
-            records.masses[lane, p, :m, 0] = chain.q
-            for touch in chain.touches:
-                heads.owner[lane, j], heads.wire[lane, j] = p, touch.wire
-                heads.start[lane, j] = chain.position + touch.ahead
-                heads.heave[lane, j, :m], heads.roll[lane, j, :m] = touch.heave, touch.roll
-                heads.k[lane, j], heads.d[lane, j] = chain.contact_stiffness, chain.contact_damping
-                heads.preload[lane, j] = chain.preload
-                records.force[lane, j, 0], records.height[lane, j, 0] = touch.force, touch.wire_height
-                j += 1
-        heads.speed[lane], heads.step[lane], heads.last[lane] = start.speed, 0, steps
-        self._record_start(lane, start)
-
-    def _record_start(self, lane: int, start: Start) -> None:
-        records, model = self.records, self._setup.model
-        records.droppers[lane, :, 0] = start.dropper_force
-        supports, heights = self._setup.line.supports, model.heights
-        records.supports[lane, supports >= 0, 0] = start.q[supports[supports >= 0]]
-        records.share[lane, 0] = records.slack[lane, 0] = 0.0
-        if records.every:
-            records.wire[lane, 0, heights >= 0] = start.q[heights[heights >= 0]]
+        self.work.active_count[lane] = 0
+        load_heads(self.heads, self.records, lane, self._setup.scheme, start, steps)
+        supports, heights = self._setup.line.supports, self._setup.model.heights
+        self.records.supports[lane, supports >= 0, 0] = start.q[supports[supports >= 0]]
+        if self.records.every:
+            self.records.wire[lane, 0, heights >= 0] = start.q[heights[heights >= 0]]
 
     def advance(self, steps: int = BLOCK) -> None:
         """Take steps in all lanes; lanes that are at their end stay there."""
@@ -155,37 +97,7 @@ class Lanes:
 
     def journey(self, lane: int, start: Start, steps: int, shape: Shape) -> Journey:
         """What a lane's run recorded."""
-        from catenary_fe.fe.drive import Journey
-
-        records, heads, mesh = self.records, self.heads, shape.mesh
-        n, every, chains = steps + 1, self.records.every, start.chains
-        time: Floats = np.arange(n, dtype=np.float64) * self._setup.scheme.h
-        owner = heads.owner[lane]
-        at = np.array([chain.position for chain in chains])
-        supports = [w.z[m.supports] for w, m in zip(shape.contact_wires, mesh.wires, strict=False)]
-        uplift = records.supports[lane, :, :n].reshape(len(supports), -1, n)
-        stored = records.wire[lane, : steps // every + 1] if every else np.zeros((0, 0))
-        nodes = zip(shape.wires, mesh.first_nodes[:-1], mesh.first_nodes[1:], strict=True)
-        nothing = np.array([])
-        return Journey(
-            time=time,
-            position=at[:, None] + heads.speed[lane] * time,
-            contact_force=np.array(
-                [records.force[lane, owner == p, :n].sum(axis=0) for p in range(len(chains))]
-            ),
-            wire_height=np.array(
-                [records.height[lane, owner == p, :n].mean(axis=0) for p in range(len(chains))]
-            ),
-            mass_heights=[records.masses[lane, p, : c.masses, :n].copy() for p, c in enumerate(chains)],
-            dropper_force=records.droppers[lane, :, :n].copy(),
-            support_height=np.array(supports)[:, :, None] + uplift,
-            wire_x=[wire.x for wire in mesh.wires],
-            wire_z=[hanging.z + stored[:, a:b] for hanging, a, b in nodes] if every else [],
-            wire_times=time[::every] if every else None,
-            energy=nothing,
-            energy_times=nothing,
-            driven_work=nothing,
-        )
+        return read_journey(self.records, self.heads, lane, start, steps, self._setup.scheme.h, shape)
 
     def doubts(self, lane: int, steps: int) -> tuple[Floats, Floats]:
         """Histories of the tension's change over the tension, and of the shortening of slack droppers [m]."""
@@ -194,33 +106,6 @@ class Lanes:
     def free(self) -> list[int]:
         """Lanes whose run is over."""
         return np.flatnonzero(self.heads.step >= self.heads.last).tolist()
-
-
-def _heads(lanes: int, sizes: Sizes, nominal: float) -> Heads:
-    each, chain = (lanes, sizes.contacts), (lanes, sizes.pantographs, sizes.coordinates)
-    square, rows = (*chain, sizes.coordinates), (*each, sizes.coordinates)
-    return Heads(
-        q=np.zeros(chain),
-        v=np.zeros(chain),
-        c=np.zeros(chain),
-        x=np.zeros(chain),
-        K=np.zeros(square),
-        D=np.zeros(square),
-        inverse=np.zeros(square),
-        load=np.zeros(chain),
-        owner=np.full(each, -1),
-        wire=np.zeros(each, dtype=np.int64),
-        start=np.zeros(each),
-        heave=np.zeros(rows),
-        roll=np.zeros(rows),
-        k=np.zeros(each),
-        d=np.zeros(each),
-        preload=np.zeros(each),
-        speed=np.zeros(lanes),
-        step=np.zeros(lanes, dtype=np.int64),
-        last=np.zeros(lanes, dtype=np.int64),
-        nominal=nominal,
-    )
 
 
 @compiled
@@ -249,12 +134,13 @@ def _loops(sources: str) -> tuple[Any, Any]:
         records: Records,
         steps: int,
     ) -> int:
+        groups = flat.x.size // 4
         for _ in range(steps):
             flat.x[:] = 0.0
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
-            lower_one(operator.lower, flat.x)
-            upper_one(operator.upper, operator.inverse, flat.x)
+            lower_one(operator.lower, flat.x, 0, groups)
+            upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
             _finish(scheme, line, wires, heads, work, records)
             predict(scheme, operator.beta, flat)
         return len(sources)

@@ -78,8 +78,8 @@ def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) 
     """
     scheme = make_scheme(time)
     model = _filled_up(model)
-    factor = _factorise(model.mass + scheme.g * model.damping + scheme.b * model.stiffness)
-    static = _factorise(model.stiffness)
+    factor = factorise(model.mass + scheme.g * model.damping + scheme.b * model.stiffness)
+    static = factorise(model.stiffness)
     K = model.stiffness.tocsr()
     rest = (model.damping - beta * K).tocsr()
     rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max()] = 0.0
@@ -89,7 +89,7 @@ def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) 
 
 def make_operator(setup: Setup, lanes: int) -> Operator:
     """The factors in the form that suits one lane or eight."""
-    form = _quads if lanes == 1 else _rows
+    form = quads if lanes == 1 else _rows
     return Operator(
         lower=form(setup.factor.L, "lower"),
         upper=form(setup.factor.L.T, "upper"),
@@ -117,7 +117,7 @@ def _filled_up(model: LinearModel) -> LinearModel:
     )
 
 
-def _factorise(matrix: Any) -> Any:
+def factorise(matrix: Any) -> Any:
     """Without pivoting: symmetric and quasi-definite, and in the order of the stations L is narrow."""
     from scipy.sparse.linalg import splu
 
@@ -145,7 +145,7 @@ def _rows(matrix: Any, triangle: str = "") -> Rows:
     return Rows(start.astype(np.uint32), column.astype(np.uint32), np.ascontiguousarray(value))
 
 
-def _quads(matrix: Any, triangle: str = "") -> Quads:
+def quads(matrix: Any, triangle: str = "") -> Quads:
     size = matrix.shape[0]
     assert size % 4 == 0
     row, column, value = _entries(matrix, triangle)

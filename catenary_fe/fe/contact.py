@@ -61,6 +61,12 @@ class MovingContact:
         values[0] = speed * self.inclination(contact)
         self._mbs.SetObjectParameter(contact.connector, "damping", list(values))
 
+    def forces(self, items: PantographItems) -> Floats:
+        """[N], shape (contacts,), on a pantograph's wires at the current state."""
+        force = exu.OutputVariableType.Force
+        values = [self._mbs.GetObjectOutput(c.connector, force)[c.wire.up] for c in items.contacts]
+        return np.array(values, dtype=float)
+
     def inclination(self, contact: ContactItems) -> float:
         """dz/dx of the wire at a contact, at the current state."""
         element, local = self._at[contact.connector]

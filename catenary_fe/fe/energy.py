@@ -2,11 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 
 _KINETIC = exu.OutputVariableType.KineticEnergy
 _POTENTIAL = exu.OutputVariableType.PotentialEnergy
+
+
+def constant_forces(mbs: exu.MainSystem, overlays: Sequence[int]) -> NDArray[np.float64]:
+    """[N], shape (coordinates,): weight, pull of curves, tensions, preloads, uplift.
+
+    overlays : numbers of the objects that carry forces along the wires
+    """
+    forces: NDArray[np.float64] = np.zeros(mbs.systemData.ODE2Size())
+    for i in overlays:
+        forces[mbs.systemData.GetObjectLTGODE2(i)] += mbs.GetObject(i)["forceVector"]
+    for i in range(mbs.systemData.NumberOfLoads()):
+        load = mbs.GetLoad(i)
+        marker = mbs.GetMarker(load["markerNumber"])
+        index = mbs.systemData.GetNodeLTGODE2(marker["nodeNumber"])[marker["coordinate"]]
+        forces[index] += load["load"]
+    return forces
 
 
 class EnergyMeter:
@@ -39,14 +58,7 @@ class EnergyMeter:
         self._contacts = [
             (i, objects[i]["stiffness"][up]) for i in by_type.get("ConnectorCartesianSpringDamper", [])
         ]
-        self._forces = np.zeros(mbs.systemData.ODE2Size())
-        for i in by_type.get("GenericODE2", []):
-            self._forces[mbs.systemData.GetObjectLTGODE2(i)] += objects[i]["forceVector"]
-        for i in range(mbs.systemData.NumberOfLoads()):
-            load = mbs.GetLoad(i)
-            marker = mbs.GetMarker(load["markerNumber"])
-            index = mbs.systemData.GetNodeLTGODE2(marker["nodeNumber"])[marker["coordinate"]]
-            self._forces[index] += load["load"]
+        self._forces = constant_forces(mbs, by_type.get("GenericODE2", []))
 
     def energy(self) -> float:
         """[J] at the current state, above an arbitrary zero."""

@@ -17,6 +17,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.dropper_matrices import dropper_motion, elongation, turning_stiffness
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.modal import link_stiffness, spring_values, transformation
 from catenary_fe.fe.model import (
@@ -105,20 +106,20 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     whole = mbs.systemData.ODE2Size()
     gaps = sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
-    moved, span = _dropper_motion(model, whole + gaps)
+    moved, span = dropper_motion(model, whole + gaps)
     tension = model.dropper_forces()
-    rows = _along(span) @ moved
+    rows = elongation(span) @ moved
     stiffness, damping = np.array([d.stiffness for d in catenary.droppers]), dropper_damping(catenary)
     D = catenary.damping.alpha * M + catenary.damping.beta * K
     D = D + rows.T @ _diagonal(damping) @ rows + _padded(spring_values(model, "damping"), gaps)
-    K = K + rows.T @ _diagonal(stiffness) @ rows + moved.T @ _across(span, tension) @ moved
+    K = K + rows.T @ _diagonal(stiffness) @ rows + moved.T @ turning_stiffness(span, tension) @ moved
     K = K + _padded(spring_values(model, "stiffness") + link_stiffness(model), gaps)
     masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
     M = M + _padded(_diagonal(np.outer(masses, np.repeat([1.0, 0.0], model.axes)).ravel()), gaps)
     T, place = _kept(model, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
     width, up = model.node_width, model.axes - 1
-    contacts = _contact_lines(model, place)
+    contacts = contact_lines(model, place, mbs.systemData.GetODE2Coordinates())
     release(mbs)
     return LinearModel(
         mass=M,
@@ -136,9 +137,10 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     )
 
 
-def _contact_lines(model: Model, place: Integers) -> tuple[ContactLine, ...]:
+def contact_lines(model: Model, place: Integers, coordinates: Floats) -> tuple[ContactLine, ...]:
+    """The contact wires with their coordinates at ``place``, at rest at these coordinates of the model."""
     lines = []
-    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
+    shapes = model.wire_shapes(coordinates)
     axes, up = model.axes, model.axes - 1
     for items, wire, first, q in zip(
         model.contacts, model.mesh.wires, model.mesh.first_nodes, shapes, strict=False
@@ -273,49 +275,6 @@ class _Triplets:
     def triplets(self) -> tuple[Floats, tuple[Integers, Integers]]:
         rows, columns, values = (np.concatenate(part) for part in zip(*self._parts, strict=True))
         return values, (rows, columns)
-
-
-def _dropper_motion(model: Model, size: int) -> tuple[Any, Floats]:
-    """Motion of each dropper's upper end from its lower one, and the dropper's direction.
-
-    Sparse, shape (axes * droppers, size), the axes of a dropper together; and shape (droppers, axes).
-    """
-    from scipy.sparse import coo_matrix
-
-    mesh = model.mesh
-    lower, upper = mesh.nodes(mesh.lower), mesh.nodes(mesh.upper)
-    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    points = np.concatenate([q[:, : model.axes] for q in shapes])
-    span = points[upper] - points[lower]
-    axes = np.arange(model.axes)
-    below, above = model.node_width * lower[:, None] + axes, model.node_width * upper[:, None] + axes
-    rows = np.arange(lower.size * axes.size)
-    columns = np.concatenate([below.ravel(), above.ravel()])
-    values = np.repeat([-1.0, 1.0], rows.size)
-    moved = coo_matrix((values, (np.tile(rows, 2), columns)), shape=(rows.size, size)).tocsr()
-    return moved, span
-
-
-def _along(span: Floats) -> Any:
-    """Elongation of the droppers from :func:`_dropper_motion`."""
-    from scipy.sparse import coo_matrix
-
-    count, axes = span.shape
-    along = span / np.linalg.norm(span, axis=1, keepdims=True)
-    place = np.repeat(np.arange(count), axes), np.arange(count * axes)
-    return coo_matrix((along.ravel(), place), shape=(count, count * axes)).tocsr()
-
-
-def _across(span: Floats, tension: Floats) -> Any:
-    """Stiffness of the droppers against turning, for :func:`_dropper_motion`: tension over length."""
-    from scipy.sparse import block_diag, csr_matrix
-
-    if not tension.size:
-        return csr_matrix((0, 0))
-    length = np.linalg.norm(span, axis=1)
-    along = span / length[:, None]
-    turn = np.eye(span.shape[1]) - along[:, :, None] * along[:, None, :]
-    return block_diag(list((tension / length)[:, None, None] * turn)).tocsr()
 
 
 def _kept(model: Model, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers]:

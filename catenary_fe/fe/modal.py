@@ -11,9 +11,10 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.dropper_matrices import taut_droppers
 from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses
+from catenary_fe.fe.model import Installation, Model, build_model, point_masses
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import Catenary, InputError, SolverError
 
@@ -75,16 +76,26 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
     wires = [element for wire in model.wires for element in wire.elements]
     masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
     M, K = mass_matrix(mbs, wires), stiffness_matrix(mbs, wires)
-    droppers = np.array([d.stiffness for d in catenary.droppers])
+    _check_taut(model)
+    droppers, dropper_damping = taut_droppers(model)
     D = catenary.damping.alpha * M + catenary.damping.beta * K
-    D = D + _droppers(model, dropper_damping(catenary), pulled=False) + spring_values(model, "damping")
+    D = D + dropper_damping + spring_values(model, "damping")
     moves = np.repeat([1.0, 0.0], model.axes)
     M = M + _diagonal(np.outer(masses, moves).ravel())
-    K = K + _droppers(model, droppers) + spring_values(model, "stiffness") + link_stiffness(model)
+    K = K + droppers + spring_values(model, "stiffness") + link_stiffness(model)
     T = transformation(model)
     M, K, D = (T.T @ matrix @ T for matrix in (M, K, D))
     release(mbs)
     return LinearSystem(M, K, D, T, model.node_width)
+
+
+def _check_taut(model: Model) -> None:
+    tension = model.dropper_forces()
+    if (tension <= 0).any():
+        raise InputError(
+            f"dropper {int(np.argmin(tension)) + 1} of the line is slack at rest: modal analysis takes all"
+            " droppers as taut; change its length, or the form"
+        )
 
 
 def solve_eigen(system: LinearSystem, nodes: Sequence[int], count: int) -> EigenPairs:
@@ -185,63 +196,52 @@ def spring_values(model: Model, what: str) -> Any:
     return _diagonal(diagonal)
 
 
-def _droppers(model: Model, along: Floats, *, pulled: bool = True) -> Any:
-    """Matrix of the taut droppers: ``along`` [N/m or N s/m] along them, tension over length across if pulled.
+@dataclass(frozen=True)
+class Link:
+    """A steady arm that is a link: a stiff spring from a wire's node to a fixed pivot.
 
-    In closed form, because Exudyn has no Jacobian for a connector with a force law of its own.
+    first : number of the node's first coordinate
+    point, pivot : [m], shape (axes,), the node now, and the other end
+    length : [m], without force
+    stiffness : [N/m]
     """
-    from scipy.sparse import coo_matrix
 
-    size, count = model.mbs.systemData.ODE2Size(), len(model.droppers)
-    if not count:
-        return coo_matrix((size, size)).tocsr()
-    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    points = np.concatenate([q[:, : model.axes] for q in shapes])
-    lower, upper = (model.mesh.nodes(clamps) for clamps in (model.mesh.lower, model.mesh.upper))
-    tension = model.dropper_forces()
-    if (tension <= 0).any():
-        raise InputError(
-            f"dropper {int(np.argmin(tension)) + 1} of the line is slack at rest: modal analysis takes all"
-            " droppers as taut; change its length, or the form"
-        )
-    block = _link_blocks(points[upper] - points[lower], along, tension if pulled else 0 * tension)
-    blocks = np.block([[block, -block], [-block, block]])
-    axes = np.arange(model.axes)
-    index = model.node_width * np.stack([lower, upper], axis=1)[:, :, None] + axes
-    index = index.reshape(count, -1)
-    rows = np.repeat(index, index.shape[1], axis=1)
-    columns = np.tile(index, (1, index.shape[1]))
-    return coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
+    first: int
+    point: Floats
+    pivot: Floats
+    length: float
+    stiffness: float
 
 
-def link_stiffness(model: Model) -> Any:
-    """Stiffness of steady arms that are links to the ground."""
-    from scipy.sparse import coo_matrix
-
-    mbs, size = model.mbs, model.mbs.systemData.ODE2Size()
-    matrix = coo_matrix((size, size)).tocsr()
+def links(model: Model) -> list[Link]:
+    """Steady arms that are links to the ground."""
+    mbs, position = model.mbs, exu.OutputVariableType.Position
+    found = []
     for item in _objects(model, "ConnectorSpringDamper"):
         if item["springForceUserFunction"]:
             continue
-        ends = [
-            np.array(mbs.GetMarkerOutput(m, exu.OutputVariableType.Position)) for m in item["markerNumbers"]
-        ]
-        span = (ends[1] - ends[0])[None, : model.axes]
-        stiffness = np.array([item["stiffness"]])
-        tension = stiffness * (np.linalg.norm(span) - item["referenceLength"])
         node = mbs.GetMarker(item["markerNumbers"][0])["nodeNumber"]
-        index = np.array(mbs.systemData.GetNodeLTGODE2(node))[: model.axes]
-        rows, columns = np.repeat(index, index.size), np.tile(index, index.size)
-        block = _link_blocks(span, stiffness, tension)
-        matrix = matrix + coo_matrix((block.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+        point, pivot = (
+            np.array(mbs.GetMarkerOutput(m, position))[: model.axes] for m in item["markerNumbers"]
+        )
+        first = int(mbs.systemData.GetNodeLTGODE2(node)[0])
+        found.append(Link(first, point, pivot, item["referenceLength"], item["stiffness"]))
+    return found
+
+
+def link_stiffness(model: Model) -> Any:
+    """Stiffness matrix of :func:`links`."""
+    from scipy.sparse import coo_matrix
+
+    size = model.mbs.systemData.ODE2Size()
+    matrix = coo_matrix((size, size)).tocsr()
+    for link in links(model):
+        span = link.pivot - link.point
+        length = np.linalg.norm(span)
+        direction = np.outer(span, span) / length**2
+        tension = link.stiffness * (length - link.length)
+        block = link.stiffness * direction + tension / length * (np.eye(span.size) - direction)
+        index = link.first + np.arange(span.size)
+        place = np.repeat(index, index.size), np.tile(index, index.size)
+        matrix = matrix + coo_matrix((block.ravel(), place), shape=(size, size)).tocsr()
     return matrix
-
-
-def _link_blocks(span: Floats, along: Floats, tension: Floats) -> Floats:
-    """Shape (links, axes, axes): ``along`` the span, and tension over length across it."""
-    length = np.linalg.norm(span, axis=1)
-    axis = span / length[:, None]
-    axial = axis[:, :, None] * axis[:, None, :]
-    across = (tension / length)[:, None, None] * (np.eye(span.shape[1]) - axial)
-    blocks: Floats = along[:, None, None] * axial + across
-    return blocks

@@ -51,6 +51,7 @@ class Model:
 
     mbs : the system, not yet assembled
     wires : contact wires, messenger wire, stitch wires, as in the mesh
+    overlay : number of the object that carries what acts along the wires
     droppers : numbers of the dropper connectors
     dropper_lengths : [m], stress-free
     ground : number of a coordinate marker that never moves
@@ -61,6 +62,7 @@ class Model:
     catenary: Catenary
     mesh: Mesh
     wires: tuple[WireItems, ...]
+    overlay: int
     droppers: list[int]
     dropper_lengths: Floats
     ground: int
@@ -155,14 +157,14 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     ground = add_ground_coordinate(mbs)
     for wire, items in zip(kinds[: mesh.first_stitch], wires, strict=False):
         anchor_and_tension(mbs, items, ground, wire)
-    add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
+    overlay = add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
     _clamp_stitch_wires(mbs, mesh, wires)
     droppers = _add_droppers(mbs, catenary, mesh, wires, installation.dropper_lengths)
     contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
     arms = add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces, held)
     supports = add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces, held)
     lengths = installation.dropper_lengths
-    return Model(mbs, catenary, mesh, wires, droppers, lengths, ground, Held(arms, supports))
+    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground, Held(arms, supports))
 
 
 def _overlay(

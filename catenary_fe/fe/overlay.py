@@ -35,8 +35,8 @@ class Overlay:
     side_pull: Floats | None = None
 
 
-def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overlay | None = None) -> None:
-    """Add weight, point masses, Rayleigh damping and the pull of curves, as one object.
+def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overlay | None = None) -> int:
+    """Add weight, point masses, Rayleigh damping and the pull of curves, as one object; returns its number.
 
     wires : all wires of the system so far, in the order they were added, before anything else with nodes
 
@@ -67,7 +67,7 @@ def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overla
     if overlay.side_pull is not None and overlay.side_pull.any():
         forces = forces + mass_matrix(mbs, elements, factors=overlay.side_pull) @ directions[1]
     nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
-    mbs.AddObject(
+    number = mbs.AddObject(
         eii.ObjectGenericODE2(
             nodeNumbers=nodes,
             forceVector=forces,
@@ -77,3 +77,4 @@ def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overla
             **matrices,
         )
     )
+    return int(number)

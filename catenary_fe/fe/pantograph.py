@@ -71,6 +71,11 @@ class PantographItems:
     strips: int
     contacts: list[ContactItems]
 
+    @property
+    def rolls(self) -> list[tuple[int, int]]:
+        """Node and coordinate of the roll of each strip that rolls."""
+        return [(node, _ROLL) for node, coordinate in self.heights if coordinate == _HEAVE]
+
 
 @dataclass(frozen=True)
 class _Mass:

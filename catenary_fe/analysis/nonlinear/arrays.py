@@ -1,0 +1,109 @@
+"""Arrays of a compiled nonlinear run. "All" coordinates are those of the wires' nodes; "free" ones move."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from catenary_fe.analysis.linear_arrays import Floats, Integers, Quads
+from catenary_fe.analysis.nonlinear.cables import Elements
+
+
+class Ends(NamedTuple):
+    """Springs between points of the wires (droppers), or between them and fixed points (links).
+
+    first, last : numbers of the first coordinates, among all, of the points; ``last`` of links has no use
+    pivot : [m], shape (springs, axes), fixed points of links
+    length, k, d : [m], [N/m], [N s/m], shape (springs,)
+    """
+
+    first: Integers
+    last: Integers
+    pivot: Floats
+    length: Floats
+    k: Floats
+    d: Floats
+
+
+class System(NamedTuple):
+    """Equations of motion, see :class:`~catenary_fe.fe.nonlinear_model.NonlinearModel`.
+
+    reference, place : shape (all,)
+    ground, force : shape (free,)
+    mass, damping : over the free coordinates
+    """
+
+    reference: Floats
+    place: Integers
+    elements: Elements
+    droppers: Ends
+    links: Ends
+    ground: Floats
+    force: Floats
+    mass: Quads
+    damping: Quads
+
+
+class Stations(NamedTuple):
+    """Contact wires, one after the other, as :func:`~catenary_fe.analysis.linear_forces.weigh_contact` takes them.
+
+    first : shape (contact wires + 1,), where the wires' nodes begin
+    x, lengths : [m], shape (nodes,)
+    static, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
+    at : shape (nodes, 2), free coordinates of height and slope
+    supports : shape (contact wires * supports,), numbers of heights among all coordinates
+    heights : shape (nodes of all wires,), likewise
+    """
+
+    first: Integers
+    x: Floats
+    lengths: Floats
+    static: Floats
+    lateral: Floats
+    at: Integers
+    supports: Integers
+    heights: Integers
+
+
+class Factor(NamedTuple):
+    """L diag(1 / inverse) Lᵀ of the step's matrix at rest, M + g D + b K, all droppers taut.
+
+    window : shape (free,), zero outside :func:`~catenary_fe.analysis.nonlinear.forces.give_at`
+    """
+
+    lower: Quads
+    upper: Quads
+    inverse: Floats
+    window: Floats
+
+
+class Motion(NamedTuple):
+    """State at a step's end as it is iterated.
+
+    q, v, residual, before : shape (free,), the last one of x
+    total, inner : shape (all,), positions and slopes, forces
+    """
+
+    q: Floats
+    v: Floats
+    residual: Floats
+    before: Floats
+    total: Floats
+    inner: Floats
+
+
+class Slack(NamedTuple):
+    """How droppers give, for those that are not as taut ones.
+
+    lack : shape (droppers,), stiffness in the step's matrix that a dropper has less than a taut one
+    row : shape (droppers, 2 * axes), its direction at its lower and upper end
+    at : shape (droppers, 2 * axes), free coordinates of these
+    column : shape (droppers, room), of the inverse of the step's matrix, times ``row``
+    first, width : shape (droppers,), from which row on, in how many; no column yet: width 0
+    """
+
+    lack: Floats
+    row: Floats
+    at: Integers
+    column: Floats
+    first: Integers
+    width: Integers

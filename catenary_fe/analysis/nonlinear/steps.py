@@ -1,0 +1,192 @@
+"""Steps of a compiled nonlinear run.
+
+Generalised-α as in a linearised run. Newton's method with the matrix at rest, which is corrected exactly for
+what changes quickly: contacts, whose law is solved along with each iteration, and droppers that are slack.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from catenary_fe.analysis import linear_arrays, linear_forces, linear_kernel
+from catenary_fe.analysis.compiled import compiled, kept, stamp
+from catenary_fe.analysis.linear_arrays import Floats, Heads, Records, Scheme, Wires, Work
+from catenary_fe.analysis.linear_forces import (
+    SWEEPS,
+    TOLERANCE,
+    advance_heads,
+    free_heads,
+    place_head,
+    push,
+    weigh_contact,
+)
+from catenary_fe.analysis.linear_kernel import predict, take_one
+from catenary_fe.analysis.nonlinear import arrays, cables, forces
+from catenary_fe.analysis.nonlinear.arrays import Factor, Motion, Slack, Stations, System
+from catenary_fe.analysis.nonlinear.cables import take_cables_in_plane, take_cables_in_space
+from catenary_fe.analysis.nonlinear.forces import give_at, soften, solve, take_droppers, take_links
+
+ITERATIONS = 20
+FLOOR = 1e-8  # [m] motion in a step below which a run is at rest
+
+
+@compiled
+def _place(scheme: Scheme, stations: Stations, factor: Factor, heads: Heads, work: Work) -> None:
+    """Contacts where they are at the step's end; the forces of the step before are the first guess."""
+    free_heads(heads, 0)
+    for j in range(heads.owner.shape[1]):
+        p = heads.owner[0, j]
+        if p < 0:
+            continue
+        position = heads.start[0, j] + heads.speed[0] * scheme.h * (heads.step[0] + 1)
+        _, lateral = weigh_contact(stations, heads, work, 0, j, position)
+        place_head(heads, work, 0, j, lateral)
+        first, width = give_at(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
+        work.first[0, j], work.width[0, j] = first, width
+        for s in range(heads.x.shape[2]):
+            heads.x[0, p, s] -= work.force[0, j] * work.soft[0, j, s]
+
+
+@compiled
+def _move(system: System, scheme: Scheme, wires: Wires, motion: Motion) -> None:
+    """Positions and velocities that belong to the accelerations."""
+    q, v, x = wires.q, wires.v, wires.x
+    for i in range(x.shape[0]):
+        motion.q[i] = q[i, 0] + scheme.b * x[i, 0]
+        motion.v[i] = v[i, 0] + scheme.g * x[i, 0]
+    for i in range(system.place.size):
+        k = system.place[i]
+        motion.total[i] = system.reference[i] + (motion.q[k] if k >= 0 else 0.0)
+
+
+@compiled
+def _contacts(heads: Heads, work: Work, residual: Floats) -> None:
+    for j in range(heads.owner.shape[1]):
+        if heads.owner[0, j] >= 0:
+            for m in range(4):
+                if work.at[0, j, m] >= 0:
+                    residual[work.at[0, j, m]] += work.force[0, j] * work.shape[0, j, m]
+
+
+@compiled
+def _relax(scheme: Scheme, wires: Wires, heads: Heads, work: Work) -> None:
+    """Bring the contact forces to their laws, and the accelerations with them."""
+    contacts = heads.owner.shape[1]
+    for _ in range(SWEEPS):
+        change = 0.0
+        for j in range(contacts):
+            if heads.owner[0, j] >= 0:
+                change = max(change, push(scheme, wires, heads, work, 0, j))
+        if change <= TOLERANCE or contacts == 1:
+            break
+
+
+@compiled
+def _correct(scheme: Scheme, wires: Wires, motion: Motion) -> tuple[float, float]:
+    """Largest displacement of this iteration, and of the step so far [m]."""
+    change, moved = 0.0, 0.0
+    for i in range(motion.before.size):
+        change = max(change, abs(wires.x[i, 0] - motion.before[i]))
+        moved = max(moved, abs(scheme.h * motion.v[i]))
+    return scheme.b * change, moved
+
+
+@compiled
+def _record(
+    scheme: Scheme,
+    stations: Stations,
+    system: System,
+    wires: Wires,
+    motion: Motion,
+    heads: Heads,
+    work: Work,
+    to: Records,
+) -> None:
+    """Write down the state at the step's end."""
+    n = heads.step[0] + 1
+    for j in range(heads.owner.shape[1]):
+        if heads.owner[0, j] >= 0:
+            to.force[0, j, n] = work.force[0, j]
+            z = work.shape[0, j, 4] - heads.nominal
+            for m in range(4):
+                i = work.at[0, j, m]
+                if i >= 0:
+                    z += work.shape[0, j, m] * (wires.q[i, 0] + scheme.b * wires.x[i, 0])
+            to.height[0, j, n] = z
+    for p in range(heads.x.shape[1]):
+        for s in range(heads.x.shape[2]):
+            to.masses[0, p, s, n] = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+    for s in range(stations.supports.size):
+        i = stations.supports[s]
+        to.supports[0, s, n] = motion.total[i] - system.reference[i]
+    if to.every > 0 and n % to.every == 0:
+        for node in range(stations.heights.size):
+            i = stations.heights[node]
+            to.wire[0, n // to.every, node] = motion.total[i] - system.reference[i]
+
+
+def _loop(take_cables: Any, sources: str) -> Any:
+    """Steps in the plane or in space; ``sources`` is the stamp of all that they call."""
+
+    @kept
+    def advance(
+        scheme: Scheme,
+        system: System,
+        stations: Stations,
+        factor: Factor,
+        wires: Wires,
+        flat: Wires,
+        motion: Motion,
+        slack: Slack,
+        heads: Heads,
+        work: Work,
+        records: Records,
+        steps: int,
+        tolerance: float,
+    ) -> tuple[int, int]:
+        """Take steps; returns iterations, or -1 where one does not converge."""
+        iterations = len(sources) * 0
+        for _ in range(steps):
+            _place(scheme, stations, factor, heads, work)
+            residual, converged = motion.residual, False
+            for _ in range(ITERATIONS):
+                iterations += 1
+                _move(system, scheme, wires, motion)
+                motion.inner[:] = 0.0
+                take_cables(system.elements, motion.total, motion.inner)
+                take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
+                take_links(system.links, motion.total, motion.inner)
+                for i in range(residual.size):
+                    residual[i] = system.force[i] - system.ground[i] * motion.q[i]
+                for i in range(system.place.size):
+                    if system.place[i] >= 0:
+                        residual[system.place[i]] += motion.inner[i]
+                take_one(system.mass, flat.x, residual)
+                take_one(system.damping, motion.v, residual)
+                _contacts(heads, work, residual)
+                solve(factor, residual)
+                soften(factor, slack, residual)
+                for i in range(residual.size):
+                    motion.before[i] = flat.x[i]
+                    flat.x[i] += residual[i]
+                _relax(scheme, wires, heads, work)
+                change, moved = _correct(scheme, wires, motion)
+                if not change < 1.0:
+                    break
+                if change <= tolerance * max(moved, FLOOR):
+                    converged = True
+                    break
+            if not converged:
+                return -1, iterations
+            _record(scheme, stations, system, wires, motion, heads, work, records)
+            advance_heads(scheme, heads, 0)
+            heads.step[0] += 1
+            predict(scheme, 0.0, flat)
+        return 0, iterations
+
+    return advance
+
+
+_STAMP = stamp(linear_arrays, linear_forces, linear_kernel, arrays, cables, forces)
+advance_in_plane = _loop(take_cables_in_plane, _STAMP)
+advance_in_space = _loop(take_cables_in_space, _STAMP)
