@@ -154,8 +154,16 @@ def _take(F: Floats, i: int, axes: int, L: float, r: Tuple, k: Tuple) -> None:
 
 
 @compiled
-def take_cables_in_plane(elements: Elements, X: Floats, F: Floats) -> None:
+def take_cables(axes: int, elements: Elements, X: Floats, F: Floats) -> None:
     """Take the elements' inner forces at the coordinates X off F; both of shape (all coordinates,)."""
+    if axes == 2:
+        _take_in_plane(elements, X, F)
+    else:
+        _take_in_space(elements, X, F)
+
+
+@compiled
+def _take_in_plane(elements: Elements, X: Floats, F: Floats) -> None:
     for e in range(elements.first.size):
         i, L = elements.first[e], elements.length[e]
         x, z = _axis(X, i, 2, L), _axis(X, i + 1, 2, L)
@@ -166,8 +174,7 @@ def take_cables_in_plane(elements: Elements, X: Floats, F: Floats) -> None:
 
 
 @compiled
-def take_cables_in_space(elements: Elements, X: Floats, F: Floats) -> None:
-    """Likewise, with three axes."""
+def _take_in_space(elements: Elements, X: Floats, F: Floats) -> None:
     for e in range(elements.first.size):
         i, L = elements.first[e], elements.length[e]
         x, y, z = _axis(X, i, 3, L), _axis(X, i + 1, 3, L), _axis(X, i + 2, 3, L)

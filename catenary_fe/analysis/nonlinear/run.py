@@ -16,7 +16,7 @@ from catenary_fe.analysis.linear_start import Chain, Start, chain_of
 from catenary_fe.analysis.nonlinear.arrays import Ends, Factor, Motion, Slack, Stations, System
 from catenary_fe.analysis.nonlinear.cables import Elements
 from catenary_fe.analysis.nonlinear.forces import ROOM
-from catenary_fe.analysis.nonlinear.steps import advance_in_plane, advance_in_space
+from catenary_fe.analysis.nonlinear.steps import advance
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.system import AnyPantograph, SolverError
@@ -78,7 +78,6 @@ class NonlinearCatenary:
             records.wire[0, 0] = moved[self._stations.heights]
         wires, motion, slack, work = self._room(sizes, start)
         flat = Wires(*(array.reshape(-1) for array in wires))
-        advance = advance_in_plane if self._model.axes == 2 else advance_in_space
         state = scheme, self._system, self._stations, self._factor, wires, flat, motion, slack, heads
         self.iterations = 0
         for first in range(0, steps, BLOCK):

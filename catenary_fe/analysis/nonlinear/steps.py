@@ -23,11 +23,12 @@ from catenary_fe.analysis.linear_forces import (
 from catenary_fe.analysis.linear_kernel import predict, take_one
 from catenary_fe.analysis.nonlinear import arrays, cables, forces
 from catenary_fe.analysis.nonlinear.arrays import Factor, Motion, Slack, Stations, System
-from catenary_fe.analysis.nonlinear.cables import take_cables_in_plane, take_cables_in_space
+from catenary_fe.analysis.nonlinear.cables import take_cables
 from catenary_fe.analysis.nonlinear.forces import give_at, soften, solve, take_droppers, take_links
 
 ITERATIONS = 20
 FLOOR = 1e-8  # [m] motion in a step below which a run is at rest
+FAR = 1.0  # [m] displacement in a step that is none any more
 
 
 @compiled
@@ -125,8 +126,8 @@ def _record(
             to.wire[0, n // to.every, node] = motion.total[i] - system.reference[i]
 
 
-def _loop(take_cables: Any, sources: str) -> Any:
-    """Steps in the plane or in space; ``sources`` is the stamp of all that they call."""
+def _loop(sources: str) -> Any:
+    """Steps; ``sources`` is the stamp of all that they call."""
 
     @kept
     def advance(
@@ -148,12 +149,12 @@ def _loop(take_cables: Any, sources: str) -> Any:
         iterations = len(sources) * 0
         for _ in range(steps):
             _place(scheme, stations, factor, heads, work)
-            residual, converged = motion.residual, False
-            for _ in range(ITERATIONS):
+            residual, converged, change = motion.residual, False, FAR
+            for n in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
                 motion.inner[:] = 0.0
-                take_cables(system.elements, motion.total, motion.inner)
+                take_cables(system.droppers.pivot.shape[1], system.elements, motion.total, motion.inner)
                 take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
@@ -170,11 +171,13 @@ def _loop(take_cables: Any, sources: str) -> Any:
                     motion.before[i] = flat.x[i]
                     flat.x[i] += residual[i]
                 _relax(scheme, wires, heads, work)
+                earlier = change
                 change, moved = _correct(scheme, wires, motion)
-                if not change < 1.0:
+                if not change < FAR:
                     break
-                if change <= tolerance * max(moved, FLOOR):
-                    converged = True
+                rate = change / earlier
+                converged = n > 0 and rate < 1 and change * rate / (1 - rate) <= tolerance * max(moved, FLOOR)
+                if converged:
                     break
             if not converged:
                 return -1, iterations
@@ -187,6 +190,4 @@ def _loop(take_cables: Any, sources: str) -> Any:
     return advance
 
 
-_STAMP = stamp(linear_arrays, linear_forces, linear_kernel, arrays, cables, forces)
-advance_in_plane = _loop(take_cables_in_plane, _STAMP)
-advance_in_space = _loop(take_cables_in_space, _STAMP)
+advance = _loop(stamp(linear_arrays, linear_forces, linear_kernel, arrays, cables, forces))
