@@ -7,6 +7,8 @@ matrix. The forces are found by relaxation: each law is solved exactly in turn, 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from catenary_fe.analysis.compiled import compiled
@@ -40,8 +42,8 @@ def solve_one_way(spring: float, damper: float, cs: float, cd: float) -> float:
 
 
 @compiled
-def weigh_contact(line: Line, heads: Heads, work: Work, c: int, j: int, position: float) -> tuple[int, float]:
-    """Shape functions at a contact; the number of the element's first node, and the place to the left at rest."""
+def weigh_contact(line: Any, heads: Heads, work: Work, c: int, j: int, position: float) -> tuple[int, float]:
+    """Shape functions at a contact; the element's first node, and how far to the left it is at rest."""
     begin, end = line.first[heads.wire[c, j]], line.first[heads.wire[c, j] + 1]
     e = begin + int(np.searchsorted(line.x[begin:end], position, side="right")) - 1
     e = min(max(e, begin), end - 2)

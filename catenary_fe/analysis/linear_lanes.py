@@ -48,7 +48,7 @@ class Lanes:
     def __init__(self, setup: Setup, sizes: Sizes, lanes: int, every: int = 0) -> None:
         assert lanes in (1, LANES)
         n, line = setup.size, setup.line
-        p, j, m = sizes.pantographs, sizes.contacts, sizes.coordinates
+        j, m = sizes.contacts, sizes.coordinates
         self._setup, self.count = setup, lanes
         self._operator = make_operator(setup, lanes) if COMPILED else None
         self.wires = Wires(*(np.zeros((n, lanes)) for _ in range(5)))

@@ -4,16 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.linear_setup import Setup
-from catenary_fe.fe.linear_model import LinearModel
+from catenary_fe.fe.linear_model import ContactLine
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, SolverError
 
 Floats = NDArray[np.float64]
 _CHANGES = 50  # of what is slack or off the wire
+
+
+class Track(Protocol):
+    """Contact wires that pantographs run along."""
+
+    @property
+    def contacts(self) -> tuple[ContactLine, ...]: ...
+
+    @property
+    def in_space(self) -> bool: ...
 
 
 @dataclass(frozen=True)
@@ -167,13 +178,18 @@ class _Contact:
         return chains
 
 
-def chain_of(model: LinearModel, pantograph: AnyPantograph) -> Chain:
+def can_be_compiled(pantograph: AnyPantograph) -> bool:
+    """Whether there is a :class:`Chain` for it."""
+    return not (isinstance(pantograph, ElasticPantograph) and pantograph.law)
+
+
+def chain_of(model: Track, pantograph: AnyPantograph) -> Chain:
     """A pantograph on a line's contact wires.
 
     Raises InputError for an elastic pantograph with a law that is not straight.
     """
     if isinstance(pantograph, ElasticPantograph):
-        if pantograph.law:
+        if not can_be_compiled(pantograph):
             raise InputError(
                 f"{pantograph.name}: the linearised run takes elastic pantographs with a straight law (force"
                 " and stiffness); use the nonlinear method for a law of points"

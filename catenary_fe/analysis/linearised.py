@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_lanes import BLOCK, Lanes, Sizes, most_lanes
+from catenary_fe.analysis.linear_lanes import BLOCK, Lanes, most_lanes
+from catenary_fe.analysis.linear_records import Sizes
 from catenary_fe.analysis.linear_setup import Setup, set_up
 from catenary_fe.analysis.linear_start import Start, chain_of, static_contact
 from catenary_fe.analysis.mean_force import MeanForce

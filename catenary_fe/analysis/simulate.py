@@ -6,12 +6,14 @@ import logging
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
+from catenary_fe.analysis.compiled import COMPILED
+from catenary_fe.analysis.linear_start import can_be_compiled
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.record import make_run
@@ -20,10 +22,16 @@ from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.system import AnyPantograph, CatenaryError, InputError
 
+if TYPE_CHECKING:
+    from catenary_fe.fe.drive import Journey
+
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-Method = Literal["nonlinear", "linearised"]
+Method = Literal["nonlinear", "linearised", "exudyn"]
+
+Pairs = Sequence[tuple[AnyPantograph, float]]
+Drive = Callable[[Pairs, float, Floats, int, Progress | None], "Journey"]
 
 _log = logging.getLogger(__name__)
 
@@ -62,8 +70,10 @@ def simulate(
     time : settings of the time integration
     store_wire : [s] between stored shapes of the whole wires; unset: none
     progress : called with the share done, 0 to 1
-    method : "linearised" about the static state, many times faster: slack droppers and contact are solved in
-        each step, large motions are not there. It warns where they matter.
+    method : "nonlinear" in compiled code; "exudyn" the same with Exudyn's own solver, many times slower, to
+        compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
+        the static state, many times faster: slack droppers and contact are solved in each step, large motions
+        are not there. It warns where they matter.
 
     Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
     the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
@@ -91,32 +101,36 @@ def simulate(
         for warning in result.warnings[len(warnings) :]:
             _log.warning(warning)
         return result
+    begin = clock.perf_counter()
+    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
+    drive = _compiled(shape, time, store_wire) if compiled else _by_exudyn(shape, time, store_wire)
+    steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
     while True:
-        begin = clock.perf_counter()
-        run = _drive(shape, pantographs, force.uplifts, speed, plan, time, store_wire, progress, warnings)
+        pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
+        journey = drive(pairs, speed, plan.start, steps, progress)
+        run = make_run(shape, pantographs, force.uplifts, speed, time, journey, warnings, method)
         run = Run(run.data, clock.perf_counter() - begin)
         if force.reached(run):
             return run
+        begin = clock.perf_counter()
 
 
-def _drive(
-    shape: Shape,
-    pantographs: Sequence[AnyPantograph],
-    uplifts: Floats,
-    speed: float,
-    plan: Plan,
-    time: TimeSettings,
-    store_wire: float | None,
-    progress: Progress | None,
-    warnings: Sequence[str],
-) -> Run:
+def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
+    from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
+
+    return NonlinearCatenary(shape, time, store_wire).drive
+
+
+def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
     from catenary_fe.fe.drive import Trip, drive
 
-    steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
-    trip = Trip(speed, plan.start, steps, time, wire_interval=store_wire)
-    pairs = list(zip(pantographs, uplifts.tolist(), strict=True))
-    journey = drive(shape.catenary, shape.mesh, shape.installation, pairs, trip, progress)
-    return make_run(shape, pantographs, uplifts, speed, time, journey, warnings)
+    def drive_it(
+        pantographs: Pairs, speed: float, positions: Floats, steps: int, progress: Progress | None
+    ) -> Journey:
+        trip = Trip(speed, positions, steps, time, wire_interval=store_wire)
+        return drive(shape.catenary, shape.mesh, shape.installation, pantographs, trip, progress)
+
+    return drive_it
 
 
 def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Plan:

@@ -63,7 +63,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
 @click.option(
     "--method",
-    type=click.Choice(["nonlinear", "linearised"]),
+    type=click.Choice(["nonlinear", "linearised", "exudyn"]),
     default="nonlinear",
     show_default=True,
     help="Linearised: about the static state, many times faster.",

@@ -64,7 +64,10 @@ _FIGURES = (
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
 @click.option(
-    "--method", type=click.Choice(["linearised", "nonlinear"]), default="linearised", show_default=True
+    "--method",
+    type=click.Choice(["linearised", "nonlinear", "exudyn"]),
+    default="linearised",
+    show_default=True,
 )
 @click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
 @click.option("--element-m", type=float, help="Largest element of the contact wire in m.")

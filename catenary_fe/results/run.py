@@ -47,7 +47,7 @@ class Run:
 
     @property
     def method(self) -> str:
-        """How it was computed: 'nonlinear' or 'linearised'."""
+        """How it was computed: 'nonlinear', 'linearised' or 'exudyn'."""
         return str(self.data.attrs["method"])
 
     @property

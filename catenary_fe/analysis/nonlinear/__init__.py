@@ -1,1 +1,1 @@
-"""Nonlinear runs in compiled code: the equations of the Exudyn model, the same integrator, ten times as fast."""
+"""Nonlinear runs in compiled code: the Exudyn model's equations and integrator, ten times as fast."""

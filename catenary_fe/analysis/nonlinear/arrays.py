@@ -44,7 +44,7 @@ class System(NamedTuple):
 
 
 class Stations(NamedTuple):
-    """Contact wires, one after the other, as :func:`~catenary_fe.analysis.linear_forces.weigh_contact` takes them.
+    """Contact wires, one after the other, as linearised runs have them in their ``Line``.
 
     first : shape (contact wires + 1,), where the wires' nodes begin
     x, lengths : [m], shape (nodes,)
@@ -52,6 +52,8 @@ class Stations(NamedTuple):
     at : shape (nodes, 2), free coordinates of height and slope
     supports : shape (contact wires * supports,), numbers of heights among all coordinates
     heights : shape (nodes of all wires,), likewise
+    rest : [m], shape (nodes of all wires,), heights that uplifts count from
+    rest_supports : [m], shape (contact wires * supports,), likewise at supports
     """
 
     first: Integers
@@ -62,6 +64,8 @@ class Stations(NamedTuple):
     at: Integers
     supports: Integers
     heights: Integers
+    rest: Floats
+    rest_supports: Floats
 
 
 class Factor(NamedTuple):

@@ -1,7 +1,7 @@
 """Forces of ANCF cable elements, in the plane and in space.
 
-The elements are Exudyn's (Gerstmayr and Irschik 2008): cubic positions r, axial strain ε = |r'| - 1, curvature
-κ = |r' × r''| / |r'|². Axial forces are integrated with four Gauss points, bending moments with two.
+The elements are Exudyn's (Gerstmayr and Irschik 2008): cubic positions r, axial strain ε = |r'| - 1,
+curvature κ = |r' × r''| / |r'|². Four Gauss points integrate axial forces, two bending moments.
 Tuples of one axis hold r' at the six points, then L r'' at the last two.
 """
 

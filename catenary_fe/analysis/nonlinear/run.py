@@ -52,7 +52,6 @@ class NonlinearCatenary:
     def drive(
         self,
         pantographs: Sequence[tuple[AnyPantograph, float]],
-        *,
         speed: float,
         positions: Floats,
         steps: int,
@@ -72,10 +71,10 @@ class NonlinearCatenary:
         counts = self._system.droppers.k.size, self._stations.supports.size, self._stations.heights.size
         records = make_records(1, sizes, counts, self._every)
         load_heads(heads, records, 0, scheme, start, steps)
-        moved = begin.wires
-        records.supports[0, :, 0] = moved[self._stations.supports]
+        total, stations = self._model.reference + begin.wires, self._stations
+        records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
         if self._every:
-            records.wire[0, 0] = moved[self._stations.heights]
+            records.wire[0, 0] = total[stations.heights] - stations.rest
         wires, motion, slack, work = self._room(sizes, start)
         flat = Wires(*(array.reshape(-1) for array in wires))
         state = scheme, self._system, self._stations, self._factor, wires, flat, motion, slack, heads
@@ -87,8 +86,8 @@ class NonlinearCatenary:
             if failed:
                 reached = h * heads.step[0]
                 raise SolverError(
-                    f"run at {3.6 * speed:g} km/h: no convergence at t = {reached:.4f} s with steps of {h:g} s;"
-                    " try a smaller time step, and look at the contact and dropper stiffnesses"
+                    f"run at {3.6 * speed:g} km/h: no convergence at t = {reached:.4f} s with steps of {h:g}"
+                    " s; try a smaller time step, and look at the contact and dropper stiffnesses"
                 )
             if progress:
                 progress((first + count) / steps)
@@ -136,7 +135,7 @@ class NonlinearCatenary:
     def _room(self, sizes: Sizes, start: Start) -> tuple[Wires, Motion, Slack, Work]:
         n, whole = self._system.force.size, self._system.place.size
         wires = Wires(start.q[:, None].copy(), *(np.zeros((n, 1)) for _ in range(4)))
-        motion = Motion(*(np.zeros(n) for _ in range(4)), np.zeros(whole), np.zeros(whole))
+        motion = Motion(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(whole), np.zeros(whole))
         work = _work(sizes)
         j = 0
         for chain in start.chains:
@@ -197,6 +196,10 @@ def _stations(model: NonlinearModel, shape: Shape) -> Stations:
         at=np.concatenate([wire.index for wire in contacts]),
         supports=np.concatenate(supports),
         heights=width * np.arange(mesh.first_nodes[-1]) + up,
+        rest=np.concatenate([wire.z for wire in shape.wires]),
+        rest_supports=np.concatenate(
+            [wire.z[m.supports] for wire, m in zip(shape.contact_wires, mesh.wires, strict=False)]
+        ),
     )
 
 

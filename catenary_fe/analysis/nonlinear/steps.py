@@ -119,11 +119,11 @@ def _record(
             to.masses[0, p, s, n] = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
     for s in range(stations.supports.size):
         i = stations.supports[s]
-        to.supports[0, s, n] = motion.total[i] - system.reference[i]
+        to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
     if to.every > 0 and n % to.every == 0:
         for node in range(stations.heights.size):
             i = stations.heights[node]
-            to.wire[0, n // to.every, node] = motion.total[i] - system.reference[i]
+            to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
 
 
 def _loop(sources: str) -> Any:
