@@ -41,7 +41,9 @@ def stamp(*modules: ModuleType) -> str:
 def _compiled(function: _Function, keep: bool) -> _Function:
     if numba is None:
         return function
-    return cast(_Function, numba.njit(cache=keep, fastmath={"contract"}, error_model="numpy")(function))
+    # to unpack Python arguments takes longer to compile than most functions that only others call
+    options = {"cache": True} if keep else {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return cast(_Function, numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function))
 
 
 @contextmanager

@@ -45,8 +45,13 @@ def solve_one_way(spring: float, damper: float, cs: float, cd: float) -> float:
 def weigh_contact(line: Any, heads: Heads, work: Work, c: int, j: int, position: float) -> tuple[int, float]:
     """Shape functions at a contact; the element's first node, and how far to the left it is at rest."""
     begin, end = line.first[heads.wire[c, j]], line.first[heads.wire[c, j] + 1]
-    e = begin + int(np.searchsorted(line.x[begin:end], position, side="right")) - 1
-    e = min(max(e, begin), end - 2)
+    e, above = begin, end - 1
+    while above - e > 1:  # np.searchsorted takes seconds to compile
+        middle = (e + above) // 2
+        if line.x[middle] <= position:
+            e = middle
+        else:
+            above = middle
     width = line.x[e + 1] - line.x[e]
     xi, length = (position - line.x[e]) / width, line.lengths[e]
     shape, rise, at = work.shape[c, j], work.rise[c, j], work.at[c, j]
