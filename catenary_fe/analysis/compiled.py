@@ -20,8 +20,13 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def compiled(function: _Function) -> _Function:
-    """Compile on first use."""
+    """Compile on first use, for other compiled functions alone: Python must call :func:`plain` of it."""
     return _compiled(function, keep=False)
+
+
+def plain(function: _Function) -> _Function:
+    """The Python function behind a compiled one."""
+    return cast(_Function, getattr(function, "py_func", function))
 
 
 def kept(function: _Function) -> _Function:

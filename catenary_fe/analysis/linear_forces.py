@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from catenary_fe.analysis.compiled import compiled
 from catenary_fe.analysis.linear_arrays import Floats, Heads, Line, Records, Scheme, Wires, Work
 from catenary_fe.analysis.linear_kernel import advance

@@ -13,11 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.dropper_matrices import dropper_motion, elongation, turning_stiffness
+from catenary_fe.fe.linearise import first_coordinate, mass_blocks, stiffness_blocks
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.modal import link_stiffness, spring_values, transformation
 from catenary_fe.fe.model import (
@@ -186,10 +186,8 @@ class _ReducedWire:
 def _reduce(model: Model, number: int, pulls: Floats) -> _ReducedWire:
     """Condense slopes along the track in each element, and positions along the track between clamps."""
     mbs, wire, width = model.mbs, model.wires[number], model.node_width
-    K = _blocks(mbs, wire.elements, exu.ComputeItemType.JacobianODE2)
-    K = (K + K.transpose(0, 2, 1)) / 2
-    M = _blocks(mbs, wire.elements, exu.ComputeItemType.MassMatrix)
-    index = np.array([mbs.systemData.GetObjectLTGODE2(e) for e in wire.elements], dtype=np.int64)
+    K, M = stiffness_blocks(mbs, wire), mass_blocks(wire)
+    index = first_coordinate(mbs, wire) + width * np.arange(len(M))[:, None] + np.arange(2 * width)
     ends = np.array([ALONG, width + ALONG])
     slopes = ends + model.axes
     across = np.setdiff1d(np.arange(2 * width), [*ends, *slopes])
@@ -225,10 +223,6 @@ def _clamps(model: Model, number: int) -> Integers:
     if number == mesh.contact_wires:
         fixed.append(mesh.stitch_ends.ravel())
     return np.unique(np.concatenate(fixed))
-
-
-def _blocks(mbs: Any, elements: list[int], what: Any) -> Floats:
-    return np.array([np.asarray(mbs.ComputeItem(exu.ObjectIndex(int(e)), what)) for e in elements])
 
 
 def _assemble(wires: list[_ReducedWire], whole: int) -> tuple[Any, Any]:

@@ -73,9 +73,8 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
     mbs = model.mbs
     mbs.Assemble()
     solve_static(mbs, what="static state for modal analysis")
-    wires = [element for wire in model.wires for element in wire.elements]
     masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
-    M, K = mass_matrix(mbs, wires), stiffness_matrix(mbs, wires)
+    M, K = mass_matrix(mbs, model.wires), stiffness_matrix(mbs, model.wires)
     _check_taut(model)
     droppers, dropper_damping = taut_droppers(model)
     D = catenary.damping.alpha * M + catenary.damping.beta * K

@@ -129,8 +129,7 @@ def nonlinear_model(catenary: Catenary, mesh: Mesh, installation: Installation) 
     model = build_model(catenary, mesh, installation)
     mbs = model.mbs
     mbs.Assemble()
-    elements = [element for wire in model.wires for element in wire.elements]
-    wire_mass, wire_stiffness = mass_matrix(mbs, elements), stiffness_matrix(mbs, elements)
+    wire_mass, wire_stiffness = mass_matrix(mbs, model.wires), stiffness_matrix(mbs, model.wires)
     solve_static(mbs, what="static state")
     rayleigh = catenary.damping.alpha * wire_mass + catenary.damping.beta * wire_stiffness
     damping = rayleigh + spring_values(model, "damping")
@@ -148,7 +147,7 @@ def nonlinear_model(catenary: Catenary, mesh: Mesh, installation: Installation) 
         mass=(T.T @ M @ T).tocsr(),
         damping=(T.T @ damping @ T).tocsr(),
         tangent=(
-            T.T @ (stiffness_matrix(mbs, elements) + taut + springs + link_stiffness(model)) @ T
+            T.T @ (stiffness_matrix(mbs, model.wires) + taut + springs + link_stiffness(model)) @ T
         ).tocsr(),
         tangent_damping=(T.T @ (damping + taut_damping) @ T).tocsr(),
         ground_stiffness=(T.T @ springs @ T).diagonal(),

@@ -47,10 +47,9 @@ def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overla
 
     overlay = overlay or Overlay()
     mbs.Assemble()
-    elements = [element for wire in wires for element in wire.elements]
     nodes = [node for wire in wires for node in wire.nodes]
     axes, width = wires[0].line.axes, wires[0].coordinates
-    M = mass_matrix(mbs, elements)
+    M = mass_matrix(mbs, wires)
     directions = [np.tile(np.eye(width)[axis], len(nodes)) for axis in range(axes)]
     up = directions[-1]
     forces = -GRAVITY * M @ up
@@ -62,10 +61,10 @@ def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overla
         forces = forces - GRAVITY * np.repeat(hanging, width) * up
     damping = overlay.damping
     if damping and (damping.alpha or damping.beta):
-        D = csr_matrix(damping.alpha * M + damping.beta * stiffness_matrix(mbs, elements))
+        D = csr_matrix(damping.alpha * M + damping.beta * stiffness_matrix(mbs, wires))
         matrices["dampingMatrix"] = exu.MatrixContainer(D)
     if overlay.side_pull is not None and overlay.side_pull.any():
-        forces = forces + mass_matrix(mbs, elements, factors=overlay.side_pull) @ directions[1]
+        forces = forces + mass_matrix(mbs, wires, factors=overlay.side_pull) @ directions[1]
     nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
     number = mbs.AddObject(
         eii.ObjectGenericODE2(

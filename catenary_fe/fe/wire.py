@@ -84,10 +84,11 @@ class WireLine:
 
 @dataclass(frozen=True)
 class WireItems:
-    """Numbers of a wire's items in an Exudyn system, and its line as built."""
+    """Numbers of a wire's items in an Exudyn system, its parameters, and its line as built."""
 
     nodes: list[int]
     elements: list[int]
+    kind: Wire
     line: WireLine
 
     @property
@@ -131,7 +132,7 @@ def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
         )
         for i, length in enumerate(line.lengths.tolist())
     ]
-    return WireItems(nodes, elements, line)
+    return WireItems(nodes, elements, wire, line)
 
 
 def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire: Wire) -> None:

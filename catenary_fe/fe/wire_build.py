@@ -123,9 +123,8 @@ def wire_at_rest(problem: WireProblem) -> Floats:
 def vertical_matrices(problem: WireProblem) -> tuple[Any, Any]:
     """Sparse stiffness and mass matrix of small vertical motions, held nodes taken out."""
     system = build_wire(problem)
-    elements = system.wire.elements
-    K = stiffness_matrix(system.mbs, elements) + system.stiffness
-    M = mass_matrix(system.mbs, elements) + system.mass
+    K = stiffness_matrix(system.mbs, [system.wire]) + system.stiffness
+    M = mass_matrix(system.mbs, [system.wire]) + system.mass
     held = [COORDINATES * node + UP for node in _held_nodes(problem)]
     vertical = [COORDINATES * i + j for i in range(len(system.wire.nodes)) for j in (UP, UP + 2)]
     free = np.array(sorted(set(vertical) - set(held)))
@@ -175,7 +174,7 @@ def _add_carried(
 
     mbs.Assemble()
     part = _part(mbs, items)
-    wire_mass = mass_matrix(mbs, items.elements)[part, part]
+    wire_mass = mass_matrix(mbs, [items])[part, part]
     up = np.tile(np.eye(COORDINATES)[UP], len(items.nodes))
     slope_up = np.roll(up, 2)
     vertical = diags(up + slope_up)
