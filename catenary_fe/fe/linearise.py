@@ -7,6 +7,7 @@ and ½ EI κ² with ε = |r'| - 1 and κ = |r' × r''| / |r'|², at four and two
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
@@ -56,19 +57,48 @@ def mass_blocks(wire: WireItems) -> Floats:
 
 def stiffness_blocks(mbs: exu.MainSystem, wire: WireItems) -> Floats:
     """[N/m], shape (elements, 4 * axes, 4 * axes), at the current state."""
-    axes, count = wire.line.axes, wire.line.lengths.size
-    first = first_coordinate(mbs, wire)
-    moved = mbs.systemData.GetODE2Coordinates()[first : first + wire.coordinates * (count + 1)]
+    axes, kind = wire.line.axes, wire.kind
+    first, each = first_coordinate(mbs, wire), np.ones_like(wire.line.lengths)
+    moved = mbs.systemData.GetODE2Coordinates()[first : first + wire.coordinates * (each.size + 1)]
     nodes = (wire.line.coordinates().ravel() + moved).reshape(-1, 2, axes)
-    values = np.concatenate([nodes[:-1], nodes[1:]], axis=1)  # shape (elements, 4, axes)
+    cable = Cables(
+        length=wire.line.lengths,
+        axial_stiffness=kind.axial_stiffness * each,
+        bending_stiffness=kind.bending_stiffness * each,
+        rest_strain=-kind.tension / kind.axial_stiffness * each,
+    )
+    return tangent_blocks(cable, np.concatenate([nodes[:-1], nodes[1:]], axis=1))
+
+
+@dataclass(frozen=True)
+class Cables:
+    """Cable elements, each array of shape (elements,).
+
+    length : [m]
+    axial_stiffness, bending_stiffness : [N], [N m²]
+    rest_strain : axial strain without force
+    """
+
+    length: Floats
+    axial_stiffness: Floats
+    bending_stiffness: Floats
+    rest_strain: Floats
+
+
+def tangent_blocks(cables: Cables, values: Floats) -> Floats:
+    """Tangent stiffness [N/m], shape (elements, 4 * axes, 4 * axes).
+
+    values : shape (elements, 4, axes), position and slope of the first node, then of the second
+    """
+    count, _, axes = values.shape
     total = np.zeros((count, 4, axes, 4, axes))
     for xi, share in zip(*_AXIAL, strict=True):
-        a, _ = _weights((xi + 1) / 2, wire.line.lengths)
-        total += share / 2 * _spread(a, _axial(wire, np.einsum("ei,eik->ek", a, values)), a)
+        a, _ = _weights((xi + 1) / 2, cables.length)
+        total += share / 2 * _spread(a, _axial(cables, np.einsum("ei,eik->ek", a, values)), a)
     for xi, share in zip(*_BENDING, strict=True):
-        a, b = _weights((xi + 1) / 2, wire.line.lengths)
+        a, b = _weights((xi + 1) / 2, cables.length)
         r, bend = (np.einsum("ei,eik->ek", w, values) for w in (a, b))
-        both, cross = _bending(wire, r, bend)
+        both, cross = _bending(cables, r, bend)
         mixed = _spread(a, cross, b)
         total += share / 2 * (_spread(a, both[0], a) + _spread(b, both[1], b))
         total += share / 2 * (mixed + np.transpose(mixed, (0, 3, 4, 1, 2)))
@@ -84,26 +114,24 @@ def _weights(xi: float, L: Floats) -> tuple[Floats, Floats]:
     return np.stack(first, axis=1), np.stack(second, axis=1)
 
 
-def _axial(wire: WireItems, r: Floats) -> Floats:
+def _axial(cables: Cables, r: Floats) -> Floats:
     """Second derivative of ½ EA (ε - ε₀)² L by r'."""
-    EA, L = wire.kind.axial_stiffness, wire.line.lengths
-    rest = 1 - wire.kind.tension / EA
     length = np.linalg.norm(r, axis=1)
     t = r / length[:, None]
     along = t[:, :, None] * t[:, None, :]
-    turning = (1 - rest / length)[:, None, None] * (np.eye(r.shape[1]) - along)
-    found: Floats = EA * L[:, None, None] * (along + turning)
+    turning = (1 - (1 + cables.rest_strain) / length)[:, None, None] * (np.eye(r.shape[1]) - along)
+    found: Floats = (cables.axial_stiffness * cables.length)[:, None, None] * (along + turning)
     return found
 
 
-def _bending(wire: WireItems, a: Floats, b: Floats) -> tuple[tuple[Floats, Floats], Floats]:
+def _bending(cables: Cables, a: Floats, b: Floats) -> tuple[tuple[Floats, Floats], Floats]:
     """Second derivatives of ½ EI φ / g² L with φ = g b·b - (a·b)², g = a·a: by a and b twice, and by both."""
     identity = np.eye(a.shape[1])
     g, bb, ab = ((u * v).sum(axis=1)[:, None, None] for u, v in ((a, a), (b, b), (a, b)))
     phi = g * bb - ab**2
     aa, ba, b2 = (u[:, :, None] * v[:, None, :] for u, v in ((a, a), (b, a), (b, b)))
     abt = np.transpose(ba, (0, 2, 1))
-    scale = wire.kind.bending_stiffness * wire.line.lengths[:, None, None] / g**2
+    scale = (cables.bending_stiffness * cables.length)[:, None, None] / g**2
     # φ_a = 2 bb a - 2 ab b, φ_b = 2 g b - 2 ab a, g_a = 2 a
     by_a = (bb - 2 * phi / g) * identity - b2 - 4 / g * (2 * bb * aa - ab * (ba + abt)) + 12 * phi / g**2 * aa
     by_b = g * identity - aa

@@ -236,11 +236,25 @@ def link_stiffness(model: Model) -> Any:
     matrix = coo_matrix((size, size)).tocsr()
     for link in links(model):
         span = link.pivot - link.point
-        length = np.linalg.norm(span)
-        direction = np.outer(span, span) / length**2
-        tension = link.stiffness * (length - link.length)
-        block = link.stiffness * direction + tension / length * (np.eye(span.size) - direction)
+        block = link_blocks(span[None], np.array([link.length]), np.array([link.stiffness]))
         index = link.first + np.arange(span.size)
         place = np.repeat(index, index.size), np.tile(index, index.size)
         matrix = matrix + coo_matrix((block.ravel(), place), shape=(size, size)).tocsr()
     return matrix
+
+
+def link_blocks(span: Floats, length: Floats, stiffness: Floats, *, pulls_only: bool = False) -> Floats:
+    """Stiffness [N/m] of springs at one end, shape (springs, axes, axes).
+
+    span : [m], shape (springs, axes), from end to end
+    length, stiffness : [m] without force, [N/m], shape (springs,)
+    pulls_only : springs that would push count as just taut
+    """
+    now = np.linalg.norm(span, axis=1)
+    direction = span / now[:, None]
+    axial = direction[:, :, None] * direction[:, None, :]
+    tension = stiffness * (now - length)
+    tension = np.maximum(tension, 0.0) if pulls_only else tension
+    across = (tension / now)[:, None, None] * (np.eye(span.shape[1]) - axial)
+    blocks: Floats = stiffness[:, None, None] * axial + across
+    return blocks

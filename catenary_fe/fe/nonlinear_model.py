@@ -20,33 +20,16 @@ from catenary_fe.fe.drive import raise_heads
 from catenary_fe.fe.dropper_matrices import taut_droppers
 from catenary_fe.fe.energy import constant_forces
 from catenary_fe.fe.linear_model import HELD, ContactLine, contact_lines
-from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.fe.linearise import Cables, mass_matrix, stiffness_matrix, tangent_blocks
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.modal import link_stiffness, links, spring_values, transformation
-from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses, wire_kinds
+from catenary_fe.fe.modal import link_blocks, links, spring_values, transformation
+from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import AnyPantograph, Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Cables:
-    """Cable elements of all wires.
-
-    first : shape (elements,), number of the first coordinate of each; its nodes' coordinates are neighbours
-    length : [m], shape (elements,)
-    axial_stiffness, bending_stiffness : [N], [N m²], shape (elements,)
-    rest_strain : shape (elements,), axial strain without force
-    """
-
-    first: Integers
-    length: Floats
-    axial_stiffness: Floats
-    bending_stiffness: Floats
-    rest_strain: Floats
 
 
 @dataclass(frozen=True)
@@ -76,9 +59,11 @@ class NonlinearModel:
     start : shape (all coordinates,), displacements in static equilibrium
     place : shape (all coordinates,), number of the free coordinate, or HELD
     mass, damping : sparse, over the free coordinates; droppers' damping is not in it
-    tangent, tangent_damping : sparse, stiffness and damping at static equilibrium, all droppers taut
+    tangent_damping : sparse, damping at static equilibrium, all droppers taut
     ground_stiffness : [N/m], shape (free coordinates,), of vertical and lateral springs to the ground
     force : [N], shape (free coordinates,), weight, tensions and preloads
+    first : shape (elements,), number of each cable element's first coordinate among all; those of its two
+        nodes follow one another
     contacts : the contact wires, their ``static`` and ``lateral`` those of the reference
     """
 
@@ -88,10 +73,10 @@ class NonlinearModel:
     place: Integers
     mass: Any
     damping: Any
-    tangent: Any
     tangent_damping: Any
     ground_stiffness: Floats
     force: Floats
+    first: Integers
     cables: Cables
     droppers: Springs
     links: Springs
@@ -104,7 +89,37 @@ class NonlinearModel:
 
     @property
     def in_space(self) -> bool:
+        """Whether it has coordinates to the side."""
         return self.axes == 3
+
+    def tangent_at(self, moved: Floats) -> Any:
+        """Stiffness over the free coordinates, all droppers taut; sparse.
+
+        moved : shape (all coordinates,), displacements
+        """
+        from scipy.sparse import coo_matrix
+
+        total, m = self.reference + moved, 4 * self.axes
+        index = self.first[:, None] + np.arange(m)
+        parts = [(index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes)))]
+        axes = np.arange(self.axes)
+        for springs, two_ends in ((self.droppers, True), (self.links, False)):
+            lower = springs.first[:, None] + axes
+            upper = springs.last[:, None] + axes
+            span = (total[upper] if two_ends else springs.pivot) - total[lower]
+            block = link_blocks(span, springs.length, springs.stiffness, pulls_only=two_ends)
+            if two_ends:
+                lower = np.hstack([lower, upper])
+                block = np.block([[block, -block], [-block, block]])
+            parts.append((lower, block))
+        rows = np.concatenate([np.repeat(i, i.shape[1], axis=1).ravel() for i, _ in parts])
+        columns = np.concatenate([np.tile(i, (1, i.shape[1])).ravel() for i, _ in parts])
+        values = np.concatenate([block.ravel() for _, block in parts])
+        rows, columns = self.place[rows], self.place[columns]
+        moves = (rows >= 0) & (columns >= 0)
+        shape = (self.size, self.size)
+        K = coo_matrix((values[moves], (rows[moves], columns[moves])), shape=shape).tocsr()
+        return K + _diagonal(self.ground_stiffness)
 
 
 @dataclass(frozen=True)
@@ -133,7 +148,7 @@ def nonlinear_model(catenary: Catenary, mesh: Mesh, installation: Installation) 
     solve_static(mbs, what="static state")
     rayleigh = catenary.damping.alpha * wire_mass + catenary.damping.beta * wire_stiffness
     damping = rayleigh + spring_values(model, "damping")
-    taut, taut_damping = taut_droppers(model)
+    _, taut_damping = taut_droppers(model)
     springs = spring_values(model, "stiffness")
     masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
     M = wire_mass + _diagonal(np.outer(masses, np.repeat([1.0, 0.0], model.axes)).ravel())
@@ -146,12 +161,10 @@ def nonlinear_model(catenary: Catenary, mesh: Mesh, installation: Installation) 
         place=place,
         mass=(T.T @ M @ T).tocsr(),
         damping=(T.T @ damping @ T).tocsr(),
-        tangent=(
-            T.T @ (stiffness_matrix(mbs, model.wires) + taut + springs + link_stiffness(model)) @ T
-        ).tocsr(),
         tangent_damping=(T.T @ (damping + taut_damping) @ T).tocsr(),
         ground_stiffness=(T.T @ springs @ T).diagonal(),
         force=T.T @ constant_forces(mbs, [model.overlay]),
+        first=_first(model),
         cables=_cables(model),
         droppers=_droppers(model),
         links=_links(model),
@@ -212,23 +225,22 @@ def _by_station(model: Model) -> tuple[Any, Integers]:
     return T[:, order].tocsr(), place
 
 
-def _cables(model: Model) -> Cables:
-    kinds = wire_kinds(model.catenary, model.mesh)
-    counts = [len(wire.elements) for wire in model.wires]
-
-    def each(values: Sequence[float]) -> Floats:
-        return np.repeat(np.array(values, dtype=float), counts)
-
+def _first(model: Model) -> Integers:
     first = [
-        model.node_width * (number + np.arange(count))
-        for number, count in zip(model.mesh.first_nodes, counts, strict=False)
+        model.node_width * (number + np.arange(len(wire.elements)))
+        for number, wire in zip(model.mesh.first_nodes, model.wires, strict=False)
     ]
+    return np.concatenate(first).astype(np.int64)
+
+
+def _cables(model: Model) -> Cables:
+    counts = [len(wire.elements) for wire in model.wires]
+    kinds = [wire.kind for wire in model.wires]
     return Cables(
-        first=np.concatenate(first).astype(np.int64),
         length=np.concatenate([wire.line.lengths for wire in model.wires]),
-        axial_stiffness=each([k.axial_stiffness for k in kinds]),
-        bending_stiffness=each([k.bending_stiffness for k in kinds]),
-        rest_strain=each([-k.tension / k.axial_stiffness for k in kinds]),
+        axial_stiffness=np.repeat([float(k.axial_stiffness) for k in kinds], counts),
+        bending_stiffness=np.repeat([float(k.bending_stiffness) for k in kinds], counts),
+        rest_strain=np.repeat([-k.tension / k.axial_stiffness for k in kinds], counts),
     )
 
 

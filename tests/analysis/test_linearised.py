@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import catenary_fe as cf
+from catenary_fe.analysis.compiled import plain
 from catenary_fe.analysis.linear_forces import one_way, solve_one_way
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 
@@ -103,9 +104,9 @@ np.save({path!r}, np.vstack([run.data[n].values for n in ("contact_force", "drop
 
 def test_plain_and_compiled_code_agree(reference_layout, tmp_path):
     results = []
-    for plain in (False, True):
-        path = str(tmp_path / f"{plain}.npy")
-        code = PLAIN.format(plain=plain, layout=str(reference_layout), path=path)
+    for without in (False, True):
+        path = str(tmp_path / f"{without}.npy")
+        code = PLAIN.format(plain=without, layout=str(reference_layout), path=path)
         subprocess.run([sys.executable, "-c", code], check=True, timeout=300)
         results.append(np.load(path))
     assert results[0] == pytest.approx(results[1], abs=1e-4)
@@ -173,6 +174,6 @@ def test_bad_questions(short_shape, pantograph):
 @settings(deadline=None)  # the first call compiles
 @given(spring=st.floats(-500, 500), damper=st.floats(-500, 500), cs=st.floats(0, 3), cd=st.floats(0, 3))
 def test_the_law_is_solved_exactly(spring, damper, cs, cd):
-    force = compiled.plain(solve_one_way)(spring, damper, cs, cd)
+    force = plain(solve_one_way)(spring, damper, cs, cd)
     assert force >= 0
-    assert force == pytest.approx(compiled.plain(one_way)(spring - cs * force, damper - cd * force), abs=1e-9)
+    assert force == pytest.approx(plain(one_way)(spring - cs * force, damper - cd * force), abs=1e-9)

@@ -32,20 +32,40 @@ FAR = 1.0  # [m] displacement in a step that is none any more
 
 
 @compiled
-def _place(scheme: Scheme, stations: Stations, factor: Factor, heads: Heads, work: Work) -> None:
+def _place(
+    scheme: Scheme,
+    stations: Stations,
+    factor: Factor,
+    heads: Heads,
+    work: Work,
+    total: Floats,
+    time: float,
+) -> None:
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
+    axes = total.size // (2 * stations.rest.size)
+    advance_heads(scheme, heads, 0)
     free_heads(heads, 0)
     for j in range(heads.owner.shape[1]):
         p = heads.owner[0, j]
         if p < 0:
             continue
-        position = heads.start[0, j] + heads.speed[0] * scheme.h * (heads.step[0] + 1)
-        _, lateral = weigh_contact(stations, heads, work, 0, j, position)
-        place_head(heads, work, 0, j, lateral)
+        position = heads.start[0, j] + heads.speed[0] * time
+        e, _ = weigh_contact(stations, heads, work, 0, j, position)
+        place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
         first, width = give_at(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
         work.first[0, j], work.width[0, j] = first, width
         for s in range(heads.x.shape[2]):
             heads.x[0, p, s] -= work.force[0, j] * work.soft[0, j, s]
+
+
+@compiled
+def _sideways(weights: Floats, total: Floats, axes: int, node: int) -> float:
+    """[m] to the left of the track at a contact, as the wire was a step ago; contact wires come first."""
+    place = 0.0
+    if axes == 3:
+        for m in range(4):
+            place += weights[m] * total[6 * (node + m // 2) + 1 + 3 * (m % 2)]
+    return place
 
 
 @compiled
@@ -143,18 +163,21 @@ def _loop(sources: str) -> Any:
         work: Work,
         records: Records,
         steps: int,
+        parts: int,
         tolerance: float,
-    ) -> tuple[int, int]:
-        """Take steps; returns iterations, or -1 where one does not converge."""
-        iterations = len(sources) * 0
-        for _ in range(steps):
-            _place(scheme, stations, factor, heads, work)
+    ) -> tuple[bool, int]:
+        """Take steps, each in so many parts; returns whether all converged, and the number of iterations."""
+        iterations, axes = len(sources) * 0, system.droppers.pivot.shape[1]
+        begin = heads.step[0] * parts
+        for n in range(begin, begin + steps * parts):
+            predict(scheme, 0.0, flat)
+            _place(scheme, stations, factor, heads, work, motion.total, scheme.h * (n + 1))
             residual, converged, change = motion.residual, False, FAR
-            for n in range(ITERATIONS):
+            for iteration in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
                 motion.inner[:] = 0.0
-                take_cables(system.droppers.pivot.shape[1], system.elements, motion.total, motion.inner)
+                take_cables(axes, system.elements, motion.total, motion.inner)
                 take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
@@ -176,16 +199,17 @@ def _loop(sources: str) -> Any:
                 if not change < FAR:
                     break
                 rate = change / earlier
-                converged = n > 0 and rate < 1 and change * rate / (1 - rate) <= tolerance * max(moved, FLOOR)
+                converged = (
+                    iteration > 0 and rate < 1 and change * rate / (1 - rate) <= tolerance * max(moved, FLOOR)
+                )
                 if converged:
                     break
             if not converged:
-                return -1, iterations
-            _record(scheme, stations, system, wires, motion, heads, work, records)
-            advance_heads(scheme, heads, 0)
-            heads.step[0] += 1
-            predict(scheme, 0.0, flat)
-        return 0, iterations
+                return False, iterations
+            if (n + 1) % parts == 0:
+                _record(scheme, stations, system, wires, motion, heads, work, records)
+                heads.step[0] += 1
+        return True, iterations
 
     return advance
 

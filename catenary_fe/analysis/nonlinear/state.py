@@ -1,0 +1,110 @@
+"""What changes from step to step in a compiled nonlinear run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.analysis.linear_arrays import Heads, Scheme, Wires, Work
+from catenary_fe.analysis.linear_records import Sizes
+from catenary_fe.analysis.linear_start import Chain, Start
+from catenary_fe.analysis.nonlinear.arrays import Motion, Slack, System
+from catenary_fe.analysis.nonlinear.forces import ROOM
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class State:
+    """Wires and pantographs at a step's end, and room for the next one's work."""
+
+    wires: Wires
+    motion: Motion
+    slack: Slack
+    heads: Heads
+    work: Work
+
+    @classmethod
+    def at(cls, start: Start, total: Floats, system: System, heads: Heads, sizes: Sizes) -> State:
+        """At rest; ``total`` are positions and slopes there, shape (all coordinates,)."""
+        n = system.force.size
+        wires = Wires(start.q[:, None].copy(), *(np.zeros((n, 1)) for _ in range(4)))
+        motion = Motion(
+            np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), total.copy(), np.zeros(total.size)
+        )
+        work = _work(sizes)
+        work.force[0] = [touch.force for chain in start.chains for touch in chain.touches]
+        return cls(wires, motion, _slack(system), heads, work)
+
+    @property
+    def kept(self) -> list[NDArray[np.generic]]:
+        """Arrays that make up the state; the others are room for work."""
+        heads = self.heads
+        return [
+            *self.wires[:4],
+            self.motion.total,
+            self.work.force,
+            heads.q,
+            heads.v,
+            heads.c,
+            heads.x,
+            heads.step,
+        ]
+
+    def snapshot(self) -> list[NDArray[np.generic]]:
+        """A copy of the state."""
+        return [array.copy() for array in self.kept]
+
+    def restore(self, snapshot: Sequence[NDArray[np.generic]]) -> None:
+        """Go back to a copy."""
+        for array, values in zip(self.kept, snapshot, strict=True):
+            array[:] = values
+
+    def rescale(self, old: Scheme, new: Scheme, chains: Sequence[Chain]) -> None:
+        """Take another time step from here on: the same state in the terms of another scheme."""
+        for q, v, x in (
+            (self.wires.q, self.wires.v, self.wires.x),
+            (self.heads.q, self.heads.v, self.heads.x),
+        ):
+            q += (old.b - new.b) * x
+            v += (old.g - new.g) * x
+        for p, chain in enumerate(chains):
+            m = len(chain.K)
+            matrix = chain.M + new.g * chain.D + new.b * chain.K
+            self.heads.inverse[0, p, :m, :m] = np.linalg.inv(matrix)
+        self.slack.width[:] = 0  # found with another matrix
+
+
+def _work(sizes: Sizes) -> Work:
+    j, m = sizes.contacts, sizes.coordinates
+    return Work(
+        force=np.zeros((1, j)),
+        slack=np.zeros((1, 0)),
+        active=np.zeros((1, 0), dtype=np.int64),
+        active_count=np.zeros(1, dtype=np.int64),
+        column=np.zeros((1, j, ROOM)),
+        first=np.zeros((1, j), dtype=np.int64),
+        width=np.zeros((1, j), dtype=np.int64),
+        shape=np.zeros((1, j, 5)),
+        rise=np.zeros((1, j, 5)),
+        at=np.zeros((1, j, 4), dtype=np.int64),
+        head=np.zeros((1, j, m)),
+        soft=np.zeros((1, j, m)),
+    )
+
+
+def _slack(system: System) -> Slack:
+    droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
+    ends = np.concatenate([droppers.first[:, None] + axes, droppers.last[:, None] + axes], axis=1)
+    count = droppers.first.size
+    return Slack(
+        lack=np.zeros(count),
+        row=np.zeros(ends.shape),
+        at=system.place[ends],
+        column=np.zeros((count, ROOM)),
+        first=np.zeros(count, dtype=np.int64),
+        width=np.zeros(count, dtype=np.int64),
+    )
