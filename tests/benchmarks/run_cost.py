@@ -1,75 +1,106 @@
 """Where the time of the reference run goes, as ratios within one process.
 
-``python tests/benchmarks/run_cost.py [--seconds 3]`` runs EN 50318:2002 at 300 km/h at the default mesh and
-step and prints the real-time factor (simulated over elapsed time, one core) and the shares of its parts.
-Absolute times depend on the machine and what else it does; compare ratios of one run.
+``python tests/benchmarks/run_cost.py [--exudyn]`` runs EN 50318:2002 at 300 km/h at the default mesh and step
+and prints the real-time factor (simulated over elapsed time, one core) and the shares of its parts; of a
+step's parts one by one, as often as they occur. ``--exudyn`` times Exudyn's own solver beside it. Absolute
+times depend on the machine and what else it does; compare ratios of one run.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
 from pathlib import Path
 
+import numba
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.fe import drive as driver
+from catenary_fe.analysis.linear_kernel import take_one
+from catenary_fe.analysis.nonlinear.cables import take_cables
+from catenary_fe.analysis.nonlinear.forces import give_at, solve
+from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
 from catenary_fe.fe.drive import Trip, drive
+from catenary_fe.fe.nonlinear_model import contact_start
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
+SPEED, START, SECONDS, STEP = 300 / 3.6, np.array([10.0]), 6.96, 1e-3
 
 
 def main() -> None:
-    """Time set-up and run; print the table."""
+    """Time set-up and run; print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=6.96, help="simulated")
-    seconds = parser.parse_args().seconds
-    catenary = cf.load_catenary(LAYOUT)
-    cf.find_form(catenary)  # loads Exudyn
+    parser.add_argument("--exudyn", action="store_true", help="time Exudyn's solver too")
+    options = parser.parse_args()
+    catenary, pairs = cf.load_catenary(LAYOUT), [(cf.library.pantograph("EN 50318:2002"), 120.0)]
+    line = NonlinearCatenary(cf.find_form(catenary))
+    line.drive(pairs, SPEED, START, 5)  # loads Exudyn, compiles
     rows: list[tuple[str, float]] = []
+    steps = round(SECONDS / STEP)
 
-    begin = time.perf_counter()
-    shape = cf.find_form(catenary)
-    rows.append(("form finding", time.perf_counter() - begin))
-    begin = time.perf_counter()
-    cf.solve_statics(shape)
-    rows.append(("statics", time.perf_counter() - begin))
-
-    recording = _Stopwatch(driver._Recorder, "record")
-    moving = _Stopwatch(driver.MovingContact, "move_to")
-    pantograph = cf.library.pantograph("EN 50318:2002")
-    trip = Trip(300 / 3.6, np.array([10.0]), round(seconds / 1e-3), cf.TimeSettings())
-    begin = time.perf_counter()
-    drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
-    total = time.perf_counter() - begin
-    rows += [
-        ("run: Exudyn's steps", total - recording.elapsed - moving.elapsed),
-        ("run: moving the contact", moving.elapsed),
-        ("run: recording", recording.elapsed),
-    ]
-    whole = sum(value for _, value in rows)
+    shape = _timed(rows, "form finding", lambda: cf.find_form(catenary))
+    _timed(rows, "statics", lambda: cf.solve_statics(shape))
+    line = _timed(rows, "equations of motion", lambda: NonlinearCatenary(shape))
+    model = (shape.catenary, shape.mesh, shape.installation)
+    _timed(rows, "static contact at the start", lambda: contact_start(*model, pairs, START))
+    _timed(rows, "run, with that", lambda: line.drive(pairs, SPEED, START, steps))
     for name, value in rows:
-        print(f"{name:28s} {value:8.2f} s {100 * value / whole:6.1f} %")
-    print(f"{'set-up (form and statics)':28s} {rows[0][1] + rows[1][1]:8.2f} s")
-    print(f"{'real-time factor of the run':28s} {seconds / total:8.2f}")
+        print(f"{name:44s} {value:8.3f} s")
+    run = rows[-1][1]
+    print(f"{'form finding and statics':44s} {rows[0][1] + rows[1][1]:8.3f} s")
+    print(f"{'real-time factor of the run':44s} {SECONDS / run:8.2f}")
+    print(f"{'iterations a step':44s} {line.iterations / steps:8.2f}")
+    for name, value in _parts(line):
+        share = 1e-6 * value * line.iterations / (run - rows[-2][1])
+        print(f"{name:44s} {value:8.1f} µs {100 * share:6.1f} %")
+    if options.exudyn:
+        trip = Trip(SPEED, START, 1000, cf.TimeSettings())
+        _timed(rows, "", lambda: drive(*model, pairs, trip))
+        print(f"{'real-time factor of Exudyn, one second':44s} {1 / rows[-1][1]:8.2f}")
 
 
-class _Stopwatch:
-    """Adds up the time spent in a method."""
+def _timed(rows: list[tuple[str, float]], name: str, what: Callable) -> object:
+    begin = time.perf_counter()
+    result = what()
+    rows.append((name, time.perf_counter() - begin))
+    return result
 
-    def __init__(self, owner: type, name: str) -> None:
-        self.elapsed = 0.0
-        method = getattr(owner, name)
 
-        def timed(*args, **kwargs):
+def _parts(line: NonlinearCatenary) -> list[tuple[str, float]]:
+    """What an iteration consists of [µs each]."""
+    system, factor = line._system, line._factor
+    total, inner = system.reference.copy(), np.zeros(system.reference.size)
+    x, u = np.zeros(system.force.size), np.zeros(system.force.size)
+    at, weights, column = np.arange(1000, 1008, 2), np.ones(4), np.zeros(1000)
+
+    jobs = {
+        "iteration: cable forces": (take_cables, (2, system.elements, total, inner)),
+        "iteration: products with mass and damping": (take_one, (system.mass, u, x)),
+        "iteration: solution": (solve, (factor, x)),
+        "iteration: window of one contact": (give_at, (factor, at, weights, column)),
+    }
+    found = []
+    for name, (function, arguments) in jobs.items():
+        loop = _repeated(function)
+        loop(1, *arguments)
+        best = np.inf
+        for _ in range(5):
             begin = time.perf_counter()
-            try:
-                return method(*args, **kwargs)
-            finally:
-                self.elapsed += time.perf_counter() - begin
+            loop(200, *arguments)
+            best = min(best, (time.perf_counter() - begin) / 200)
+        twice = 2 if "products" in name else 1
+        found.append((name, 1e6 * best * twice))
+    return found
 
-        setattr(owner, name, timed)
+
+def _repeated(function: Callable) -> Callable:
+    @numba.njit
+    def loop(times, *arguments):
+        for _ in range(times):
+            function(*arguments)
+
+    return loop
 
 
 if __name__ == "__main__":
