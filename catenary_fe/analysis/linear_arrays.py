@@ -79,6 +79,20 @@ class Operator(NamedTuple):
     beta: float
 
 
+class Links(NamedTuple):
+    """Steady arms that swing, see :class:`~catenary_fe.fe.linear_model.SwingingLinks`.
+
+    at : shape (links, 2)
+    yielding : columns of the inverse for these coordinates, one link's two after the other
+    """
+
+    at: Integers
+    span: Floats
+    length: Floats
+    k: Floats
+    yielding: Columns
+
+
 class Line(NamedTuple):
     """Contact wires, one after the other, and droppers.
 
@@ -89,6 +103,7 @@ class Line(NamedTuple):
     give : columns of the inverse for these coordinates, numbered by ``column``
     rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
     yielding : columns of the inverse for the droppers
+    links : steady arms
     supports, heights, tensions, rest : coordinates of heights at supports and of all nodes, of tensions, and
         the tensions at rest
     """
@@ -106,6 +121,7 @@ class Line(NamedTuple):
     d: Floats
     tension: Floats
     yielding: Columns
+    links: Links
     supports: Integers
     heights: Integers
     tensions: Integers
@@ -189,6 +205,7 @@ class Work(NamedTuple):
 
     force : [N], shape (lanes, contacts)
     slack : [N], shape (lanes, droppers), what is taken off a dropper that is not as a taut one
+    swing : [N], shape (lanes, links, 2), what a link's force has more than its tangent
     active : shape (lanes, droppers), numbers of those droppers, the first ``active_count`` of the lane
     column, first, width : shape (lanes, contacts, room) and (lanes, contacts), how the wires give there,
         from which row on, in how many
@@ -199,6 +216,7 @@ class Work(NamedTuple):
 
     force: Floats
     slack: Floats
+    swing: Floats
     active: Integers
     active_count: Integers
     column: Floats

@@ -9,12 +9,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import Floats, Heads, Line, Records, Scheme, Wires, Work
+from catenary_fe.analysis.linear_arrays import Floats, Heads, Line, Links, Records, Scheme, Wires, Work
 from catenary_fe.analysis.linear_kernel import advance
 
 SWEEPS = 60
 TOLERANCE = 1e-9  # [N] by which forces may still change
+LOOSE = 1e-3  # [N] of a link's force that is left out
 FAR = 2**31  # beyond all rows
 
 
@@ -168,6 +171,61 @@ def slacken(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int
 
 
 @compiled
+def swing(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int) -> float:
+    """Bring a link's force from its tangent to what it is on its circle; returns the change [N]."""
+    links, force = line.links, work.swing[c, i]
+    a, b = links.at[i, 0], links.at[i, 1]
+    y = wires.q[a, c] + scheme.b * wires.x[a, c]
+    z = wires.q[b, c] + scheme.b * wires.x[b, c]
+    first_y, first_z = links.yielding.first[2 * i], links.yielding.first[2 * i + 1]
+    of_y, of_z = links.yielding.value[2 * i], links.yielding.value[2 * i + 1]
+    yy, zy = scheme.b * of_y[a - first_y], scheme.b * of_y[b - first_y]
+    yz, zz = scheme.b * of_z[a - first_z], scheme.b * of_z[b - first_z]
+    change_y, change_z = 0.0, 0.0
+    for _ in range(SWEEPS):
+        more_y, more_z, ky, kc, kz = beyond_tangent(links, i, y, z)
+        off_y, off_z = more_y - force[0] - change_y, more_z - force[1] - change_z
+        if abs(off_y) + abs(off_z) < LOOSE:
+            break
+        # Newton: (I - R' G) d = off, R' the derivative of the force beyond the tangent
+        m11, m12 = 1 - (ky * yy + kc * zy), -(ky * yz + kc * zz)
+        m21, m22 = -(kc * yy + kz * zy), 1 - (kc * yz + kz * zz)
+        determinant = m11 * m22 - m12 * m21
+        dy = (m22 * off_y - m12 * off_z) / determinant
+        dz = (m11 * off_z - m21 * off_y) / determinant
+        change_y, change_z = change_y + dy, change_z + dz
+        y, z = y + yy * dy + yz * dz, z + zy * dy + zz * dz
+    if change_y == 0.0 and change_z == 0.0:
+        return 0.0
+    force[0] += change_y
+    force[1] += change_z
+    for m in range(of_y.size):
+        wires.x[first_y + m, c] += change_y * of_y[m]
+    for m in range(of_z.size):
+        wires.x[first_z + m, c] += change_z * of_z[m]
+    return float(abs(change_y) + abs(change_z))
+
+
+@compiled
+def beyond_tangent(links: Links, i: int, y: float, z: float) -> tuple[float, float, float, float, float]:
+    """Force of a link [N] beyond its tangent at rest, and its derivatives yy, yz, zz, at displacements."""
+    fy, fz, ky, kc, kz = link_force(links, i, y, z)
+    rest_y, rest_z, ry, rc, rz = link_force(links, i, 0.0, 0.0)
+    ky, kc, kz = ky - ry, kc - rc, kz - rz
+    return fy - rest_y - ry * y - rc * z, fz - rest_z - rc * y - rz * z, ky, kc, kz
+
+
+@compiled
+def link_force(links: Links, i: int, y: float, z: float) -> tuple[float, float, float, float, float]:
+    """Force of a link on the wire [N], and its derivatives yy, yz, zz."""
+    sy, sz, k = links.span[i, 0] - y, links.span[i, 1] - z, links.k[i]
+    square = sy * sy + sz * sz
+    pull = k * (1 - links.length[i] / np.sqrt(square))
+    stiff = (k - pull) / square
+    return pull * sy, pull * sz, -pull - stiff * sy * sy, -stiff * sy * sz, -pull - stiff * sz * sz
+
+
+@compiled
 def dropper_parts(scheme: Scheme, line: Line, wires: Wires, c: int, i: int) -> tuple[float, float]:
     """Spring's and damper's force [N] of a dropper, as if it could push."""
     e, rate = 0.0, 0.0
@@ -214,6 +272,9 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
             contacts += 1
     for a in range(work.active_count[c]):
         work.slack[c, work.active[c, a]] = 0.0
+    links = line.links.k.size
+    for i in range(links):
+        work.swing[c, i, 0], work.swing[c, i, 1] = 0.0, 0.0
     free_heads(heads, c)
     while True:
         for _ in range(SWEEPS):
@@ -223,7 +284,9 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
                     change = max(change, push(scheme, wires, heads, work, c, j))
             for a in range(work.active_count[c]):
                 change = max(change, slacken(scheme, line, wires, work, c, work.active[c, a]))
-            if change <= TOLERANCE or contacts + work.active_count[c] == 1:
+            for i in range(links):
+                change = max(change, swing(scheme, line, wires, work, c, i))
+            if change <= TOLERANCE or contacts + work.active_count[c] + links == 1:
                 break
         if not find_slack(scheme, line, wires, work, to.droppers[c, :, heads.step[c] + 1], c):
             break

@@ -57,6 +57,7 @@ class Lanes:
         self.work = Work(
             force=np.zeros((lanes, j)),
             slack=np.zeros((lanes, line.k.size)),
+            swing=np.zeros((lanes, line.links.k.size, 2)),
             active=np.zeros((lanes, line.k.size), dtype=np.int64),
             active_count=np.zeros(lanes, dtype=np.int64),
             column=np.zeros((lanes, j, width)),

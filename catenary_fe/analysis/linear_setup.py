@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Columns, Line, Operator, Quads, Rows, Scheme
+from catenary_fe.analysis.linear_arrays import Columns, Line, Links, Operator, Quads, Rows, Scheme
 from catenary_fe.fe.linear_model import HELD, LinearModel
 from catenary_fe.fe.solver_settings import TimeSettings
 
@@ -192,11 +192,21 @@ def _line(model: LinearModel, factor: Any) -> Line:
         d=model.dropper_damping,
         tension=model.dropper_tension,
         yielding=_columns(factor, model.dropper_rows.T.tocsc()),
+        links=_links(model, factor),
         supports=np.concatenate([wire.supports for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,
         rest=model.rest_tension,
     )
+
+
+def _links(model: LinearModel, factor: Any) -> Links:
+    from scipy.sparse import csc_matrix
+
+    links = model.links
+    at = links.index.ravel()
+    units = csc_matrix((np.ones(at.size), (at, np.arange(at.size))), shape=(model.size, at.size))
+    return Links(links.index, links.span, links.length, links.stiffness, _columns(factor, units))
 
 
 def _columns(factor: Any, right: Any) -> Columns:

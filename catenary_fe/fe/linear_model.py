@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.dropper_matrices import dropper_motion, elongation, turning_stiffness
 from catenary_fe.fe.linearise import first_coordinate, mass_blocks, stiffness_blocks
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.modal import link_stiffness, spring_values, transformation
+from catenary_fe.fe.modal import link_stiffness, links, spring_values, transformation
 from catenary_fe.fe.model import (
     Installation,
     Model,
@@ -59,6 +59,22 @@ class ContactLine:
 
 
 @dataclass(frozen=True)
+class SwingingLinks:
+    """Steady arms that are links: the wire on one swings on a circle, of which the matrices know the tangent.
+
+    index : shape (links, 2), numbers of the coordinates to the left and up
+    span : [m], shape (links, 2), likewise from the wire to the pivot, at rest
+    length : [m], shape (links,), without force
+    stiffness : [N/m], shape (links,)
+    """
+
+    index: Integers
+    span: Floats
+    length: Floats
+    stiffness: Floats
+
+
+@dataclass(frozen=True)
 class LinearModel:
     """M q̈ + D q̇ + K q = f with all droppers taut; coordinates in the order of their stations.
 
@@ -69,6 +85,7 @@ class LinearModel:
     contacts : the contact wires
     heights : shape (nodes of all wires,), numbers of the coordinates up, or HELD
     tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
+    links : steady arms that swing
     rest_tension : [N], shape (gaps,), nominal tension of their wires
     in_space : whether it has coordinates to the side
     """
@@ -84,6 +101,7 @@ class LinearModel:
     heights: Integers
     tensions: Integers
     rest_tension: Floats
+    links: SwingingLinks
     in_space: bool
 
     @property
@@ -119,6 +137,7 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     T, place = _kept(model, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
     width, up = model.node_width, model.axes - 1
+    swinging = _swinging_links(model, place)
     contacts = contact_lines(model, place, mbs.systemData.GetODE2Coordinates())
     release(mbs)
     return LinearModel(
@@ -133,7 +152,20 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
         heights=place[width * np.arange(mesh.first_nodes[-1]) + up],
         tensions=place[whole:],
         rest_tension=np.concatenate([w.tension for w in wires]),
+        links=swinging,
         in_space=model.axes == 3,
+    )
+
+
+def _swinging_links(model: Model, place: Integers) -> SwingingLinks:
+    found = links(model)
+    first = np.array([link.first for link in found], dtype=np.int64)
+    span = np.array([link.pivot - link.point for link in found]).reshape(len(found), model.axes)
+    return SwingingLinks(
+        index=place[first[:, None] + [model.axes - 2, model.axes - 1]],
+        span=span[:, -2:],
+        length=np.array([link.length for link in found], dtype=float),
+        stiffness=np.array([link.stiffness for link in found], dtype=float),
     )
 
 
