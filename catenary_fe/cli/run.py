@@ -145,9 +145,9 @@ def run(
             summary["criteria_system"] = system
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
+            files.keep(folder, result, _options(click.get_current_context()))
             with working("pictures", not quiet):
                 write_run(folder, shape, result, summary, rows)
-            files.keep(folder, result, _options(click.get_current_context()))
     if as_json:
         print_json(summary)
     elif not quiet:
@@ -189,6 +189,7 @@ def write_run(
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
     folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    folder.keep()  # the run is safe whatever happens to its pictures
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
     folder.picture("contact_force.png", views.plot_contact_force(result))

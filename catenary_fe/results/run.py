@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.checksum import ATTRIBUTE, checksum
+from catenary_fe.results.files import written_aside
 from catenary_fe.results.guards import Check, run_checks
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
@@ -160,14 +162,10 @@ class Run:
 
     def save(self, path: str | Path) -> Path:
         """Write all data as netCDF (classic format: any program reads it). Raises InputError if it cannot."""
-        path = Path(path)
-        aside = path.with_name(path.name + ".part")
-        try:
-            self.data.drop_encoding().to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
-            aside.replace(path)
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
-        return path
+        sealed = self.data.drop_encoding().assign_attrs({ATTRIBUTE: checksum(self.data)})
+        with written_aside(path) as aside:
+            sealed.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
+        return Path(path)
 
     def plot_contact_force(self, ax: Axes | None = None) -> Axes:
         """Contact force along the line. See :func:`catenary_fe.views.plot_contact_force`."""
@@ -204,7 +202,15 @@ def load_run(path: str | Path) -> Run:
     except FileNotFoundError:
         raise InputError(f"{path}: no such file; give the run.nc of a run's folder") from None
     except Exception as error:  # netCDF readers raise what they like on damaged bytes
-        raise InputError(f"{path}: not a readable netCDF file ({type(error).__name__})") from None
+        raise InputError(
+            f"{path}: not a readable netCDF file ({type(error).__name__}): cut off, damaged, or something"
+            " else; run again, or take a copy"
+        ) from None
     if data.attrs.get("format") != FORMAT:
         raise InputError(f"{path}: not a run of catenary_fe (format {data.attrs.get('format')!r})")
+    if data.attrs.pop(ATTRIBUTE, None) != checksum(data):
+        raise InputError(
+            f"{path}: damaged: its content is not what its checksum says; run again, or take a copy (a file"
+            " that is changed on purpose is to be written with Run.save)"
+        )
     return Run(data)
