@@ -6,6 +6,7 @@ import logging
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -16,6 +17,7 @@ from catenary_fe.analysis.compiled import COMPILED
 from catenary_fe.analysis.linear_start import can_be_compiled
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.mean_force import MeanForce
+from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
@@ -76,8 +78,8 @@ def simulate(
         are not there. It warns where they matter.
 
     Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
-    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
-    the mean force is not reached.
+    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or the
+    mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
@@ -107,8 +109,11 @@ def simulate(
     steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
     while True:
         pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
-        journey = drive(pairs, speed, plan.start, steps, progress)
-        run = make_run(shape, pantographs, force.uplifts, speed, time, journey, warnings, method)
+        label = partial(
+            make_run, shape, pantographs, force.uplifts, speed, time, warnings=warnings, method=method
+        )
+        with kept_when_stopped(label, steps * time.step):
+            run = label(drive(pairs, speed, plan.start, steps, progress))
         run = Run(run.data, clock.perf_counter() - begin)
         if force.reached(run):
             return run
