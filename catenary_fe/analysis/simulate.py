@@ -19,6 +19,7 @@ from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run
+from catenary_fe.analysis.resources import check_memory, demand
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
@@ -77,9 +78,10 @@ def simulate(
         the static state, many times faster: slack droppers and contact are solved in each step, large motions
         are not there. It warns where they matter.
 
-    Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
-    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or the
-    mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
+    Raises InputError for a speed in the wrong unit, a run that would end beyond the line or take more memory
+    than there is, a pantograph that the air pushes down or a contact wire that leaves the head sideways,
+    SolverError where a solve fails or the mean force is not reached, Interrupted after Ctrl-C; both have the
+    run until then as ``partial``.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
@@ -91,6 +93,10 @@ def simulate(
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
     plan = plan_run(shape, len(pantographs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
+    steps = int(plan.distance / (speed * time.step))
+    shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
+    needs = demand(shape.catenary, shape.mesh, pantographs, steps, shapes, method)
+    check_memory(needs, f"run at {3.6 * speed:g} km/h")
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     for warning in warnings:
         _log.warning(warning)

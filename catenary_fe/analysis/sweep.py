@@ -6,6 +6,7 @@ import hashlib
 import json
 import logging
 import os
+import signal
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,10 +22,11 @@ import numpy as np
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.linear_arrays import LANES
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.analysis.simulate import Method, plan_run, simulate
 from catenary_fe.analysis.sweep_store import Record, Store, open_store
 from catenary_fe.equilibrium import Shape, find_form
-from catenary_fe.fe.mesh import MeshSettings
+from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
@@ -94,7 +96,7 @@ def run_sweep(
     A record has ``values``, and either ``summary`` (see :meth:`Run.summary`) or ``error``. Each is written
     into ``folder/cases`` as soon as it is there: a sweep that was stopped goes on from where it was.
 
-    jobs : number of processes, -1: one a core
+    jobs : number of processes, -1: one a core, fewer where the memory has no room for so many
     scheduler : address of a Dask cluster to run on instead
     retry : run cases again that failed
     progress : called with the numbers of cases done and of all cases
@@ -102,8 +104,8 @@ def run_sweep(
     A case whose worker process is killed is tried again; where that happens also when it runs alone, its
     record says ``error`` and ``lost``, and it is tried again at the next start.
 
-    Raises InputError if the folder cannot be written, another process writes there, or the cluster is not
-    there.
+    Raises InputError if the folder cannot be written, another process writes there, the memory has no room,
+    or the cluster is not there.
     """
     with open_store(Path(folder) / "cases") as store:
         return _run_missing(cases, settings, store, jobs, scheduler, retry, progress)
@@ -127,8 +129,13 @@ def _run_missing(
     if done:
         _log.info("%d of %d cases are there already", done, len(cases))
     to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
-    tasks = _tasks(to_run, settings, _workers(jobs))
-    for numbers, found in _spread(tasks, to_run, settings, _workers(jobs), scheduler):
+    workers = _workers(jobs)
+    if to_run and not scheduler:
+        needs = _largest_demand(list(to_run.values()), settings)
+        workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
+        check_memory(needs, "sweep", workers)
+    tasks = _tasks(to_run, settings, workers)
+    for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
         for i, record in zip(numbers, found, strict=True):
             records[i] = record
             if LOST not in record:
@@ -145,6 +152,17 @@ def _kept(store: Store, key: str, retry: bool) -> Record | None:
     if record is None or ("summary" in record) == ("error" in record):
         return None
     return None if retry and "error" in record else record
+
+
+def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Demand:
+    """Of a process at its largest: the longest line at the lowest speed, in all lanes."""
+    longest = max(cases, key=lambda case: case.catenary.length)
+    most = max(cases, key=lambda case: len(case.pantographs))
+    speed = min(case.speed for case in cases)
+    steps = int(longest.catenary.length / (speed * settings.time.step)) if speed > 0 else 0
+    lanes = min(LANES, len(cases)) if settings.method == "linearised" else 1
+    mesh = make_mesh(longest.catenary, settings.mesh)
+    return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, lanes)
 
 
 def _workers(jobs: int) -> int:
@@ -217,6 +235,11 @@ def _in_parallel(
         yield from parallel(delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
 
 
+def _leave_interrupts() -> None:
+    """Ctrl-C goes to all processes of a terminal: the one that started the others ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 @contextmanager
 def _manager_may_stumble() -> Iterator[None]:
     """Say nothing where work that is taken away at an interruption trips up the thread that hands it out.
@@ -259,10 +282,12 @@ def _lost() -> Record:
 
 @contextmanager
 def _engine(scheduler: str | None) -> Iterator[None]:
-    if scheduler is None:
-        yield
-        return
     import joblib
+
+    if scheduler is None:
+        with joblib.parallel_config("loky", initializer=_leave_interrupts):
+            yield
+        return
 
     try:
         from dask.distributed import Client

@@ -49,7 +49,12 @@ EPILOG = """\b
 Examples:
   catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o out
   catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json
-  catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC"""
+  catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC
+
+\b
+Ten spans at 1 ms with the wires every 10 ms take 10 MB on disk and 0.4 GB of memory; what is too
+much for the machine is refused before the run. A run that is stopped or fails in the middle is kept
+in DIR/partial."""
 
 
 PARTIAL = "partial"  # folder inside the output folder
@@ -165,7 +170,7 @@ def run(
         if system:
             print_criteria(system, rows)
         if output:
-            click.echo(f"results and pictures in {output}")
+            click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
     if not as_json:
         print_warnings(summary["warnings"])
     return exit_code(rows)
@@ -274,6 +279,10 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
     )
+
+
+def _megabytes(folder: str) -> float:
+    return sum(file.stat().st_size for file in Path(folder).iterdir() if file.is_file()) / 1e6
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ATTRIBUTE = "content_sha256"  # where a stored dataset keeps it
-_STORED = {"f": "<f8", "i": "<i8", "u": "<i8"}  # netCDF's classic format has its own widths and byte order
 
 
 def checksum(data: xr.Dataset) -> str:
@@ -24,8 +23,10 @@ def checksum(data: xr.Dataset) -> str:
         found.update(repr((name, variable.dims, variable.shape)).encode())
         found.update(_attributes(variable.attrs))
         values = np.asarray(variable.values)
-        if values.dtype.kind in _STORED:
-            found.update(np.ascontiguousarray(values, dtype=_STORED[values.dtype.kind]).data)
+        if values.dtype.kind == "f":
+            found.update(np.ascontiguousarray(values, dtype=f"<f{values.dtype.itemsize}").data)
+        elif values.dtype.kind in "iu":  # netCDF's classic format has widths of its own
+            found.update(np.ascontiguousarray(values, dtype="<i8").data)
         else:
             found.update(json.dumps([str(v) for v in values.ravel()]).encode())
     found.update(_attributes({k: v for k, v in data.attrs.items() if k != ATTRIBUTE}))

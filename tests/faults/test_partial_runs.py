@@ -1,4 +1,4 @@
-"""Runs that fail or are interrupted in the middle: what was computed is kept, and marked where it is shown."""
+"""Runs that fail or are interrupted in the middle: what was computed is kept and marked where it is shown."""
 
 import json
 import os
