@@ -27,7 +27,11 @@ from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, Input
 
 PROGRAM = 320e6  # [bytes] of the program itself with its libraries
 A_NODE = 2e4  # [bytes] of a node in the model and its factors
-COPIES = {"exudyn": 3.0, "nonlinear": 2.5, "linearised": 2.5}  # of the histories, in double precision, at the end of a run
+COPIES = {
+    "exudyn": 3.0,
+    "nonlinear": 2.5,
+    "linearised": 2.5,
+}  # of the histories, in double precision, at the end of a run
 SHARE = 0.9  # of the memory that is free
 
 
@@ -73,10 +77,11 @@ def check_memory(found: Demand, what: str, workers: int = 1) -> None:
     free = free_memory()
     if free is not None and workers * found.memory > SHARE * free:
         at_once = f"{workers} processes of " if workers > 1 else ""
+        fewer = ", fewer processes (--jobs)" if workers > 1 else ""
         raise InputError(
             f"{what}: would take {at_once}{_in_gb(found.memory)} of memory, and {_in_gb(found.output)} on disk"
-            f" for each run; {_in_gb(free)} of memory are free: store the wires less often or not at all, take a"
-            f" larger time step{', fewer processes (--jobs)' if workers > 1 else ''} or fewer spans"
+            f" for each run; {_in_gb(free)} of memory are free: store the wires less often or not at all, take"
+            f" a larger time step{fewer} or fewer spans"
         )
 
 

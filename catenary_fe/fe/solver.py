@@ -49,8 +49,8 @@ def solve_static(mbs: exu.MainSystem, *, what: str) -> None:
         place = place_of_fault(mbs, start)
         raise SolverError(
             f"{what}: no static equilibrium found, neither at once nor in {LOAD_STEPS} steps of the load;"
-            f" {place + '; ' if place else ''}look there for tensions, lengths, stiffnesses or forces that are"
-            " far from usual values, or refine the mesh"
+            f" {place + '; ' if place else ''}look there for tensions, lengths, stiffnesses or forces that"
+            " are far from usual values, or refine the mesh"
         )
 
 

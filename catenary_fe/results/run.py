@@ -147,7 +147,7 @@ class Run:
         return [self._statistics(i, spans, filter) for i in range(self.data.sizes["pantograph"])]
 
     def figures(self, filter: FilterKind = "causal") -> list[ForceStatistics | None]:
-        """Statistics over the evaluated spans; None for pantographs of partial runs that did not pass them."""
+        """Statistics over the evaluated spans; None where a partial run ended before them."""
         return [
             self._statistics(i, None, filter) if self._passed(i, self.evaluated_spans) else None
             for i in range(self.data.sizes["pantograph"])

@@ -124,7 +124,9 @@ def test_names_that_are_taken(call, folder, layout, tmp_path):
 
 
 def test_two_runs_into_one_folder(call, start, layout, tmp_path):
-    first = start("run", layout, *OPTIONS, "--time-step-ms", "0.5", "-o", tmp_path / "run")
+    first = start(
+        "run", layout, *OPTIONS, "--time-step-ms", "0.5", "--method", "exudyn", "-o", tmp_path / "run"
+    )
     wait_until(lambda: (tmp_path / "run" / ".lock").exists(), first)
     os.kill(first.pid, signal.SIGSTOP)
     code, _, err = call("run", layout, *LINEAR, "-o", tmp_path / "run")

@@ -26,14 +26,15 @@ def interrupted(shape, pantographs, share, **settings):
         if done >= share:
             raise KeyboardInterrupt
 
+    settings = {"method": "exudyn", "time": COARSE} | settings
     with pytest.raises(cf.Interrupted) as caught:
-        cf.simulate(shape, pantographs, speed=200 / 3.6, time=COARSE, progress=stop, **settings)
+        cf.simulate(shape, pantographs, speed=200 / 3.6, progress=stop, **settings)
     return caught.value
 
 
 @pytest.fixture(scope="module")
 def whole(shape, pantograph):
-    return cf.simulate(shape, [pantograph], speed=200 / 3.6, time=COARSE, store_wire=0.02)
+    return cf.simulate(shape, [pantograph], speed=200 / 3.6, time=COARSE, store_wire=0.02, method="exudyn")
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +104,18 @@ def test_of_two_pantographs_the_one_that_passed(shape, pantograph):
     assert not run.reached
 
 
+def test_a_compiled_run_keeps_its_finished_blocks(shape, pantograph):
+    time = cf.TimeSettings(step=2e-3)
+    whole = cf.simulate(shape, [pantograph], speed=200 / 3.6, time=time, store_wire=0.02)
+    early = interrupted(shape, [pantograph], 0.5, method="nonlinear", time=time, store_wire=0.02).partial
+    n = early.time.size
+    assert n % 250 == 1
+    assert not early.reached
+    assert np.array_equal(early.data["contact_force"].values, whole.data["contact_force"].values[:, :n])
+    shapes = early.data.sizes["wire_time"]
+    assert np.array_equal(early.data["contact_wire_height"], whole.data["contact_wire_height"][:shapes])
+
+
 def test_next_to_nothing_is_not_kept(shape, pantograph):
     assert interrupted(shape, [pantograph], 0.0).partial is None
 
@@ -133,6 +146,7 @@ def test_a_run_that_fails_is_kept_as_partial(call, layout, tmp_path):
     stiff.write_text(layout.read_text().replace("stiffness = 100e3", "stiffness = 1e7"))
     folder = tmp_path / "run"
     options = ["--pantograph", PANTOGRAPH, "--speed-kmh", "200", "--time-step-ms", "8"]
+    options += ["--method", "exudyn"]
     code, out, err = call("run", stiff, *options, "-o", folder)
     assert (code, out) == (4, "")
     assert "kept in" in err
@@ -150,7 +164,7 @@ def test_a_run_that_fails_is_kept_as_partial(call, layout, tmp_path):
     assert run.partial.reached_s == pytest.approx(0.6, abs=0.1)
     assert any("on from there in steps of 1/2 of it" in warning for warning in run.warnings)
     before = content(folder / "partial")
-    assert call("run", stiff, *options, "--method", "linearised", "-o", tmp_path / "other")[0] == 0
+    assert call("run", stiff, *options[:-1], "linearised", "-o", tmp_path / "other")[0] == 0
     assert content(folder / "partial") == before
     assert call("run", layout, *LINEAR, "-o", folder)[0] == 0  # a whole run: the partial one is out of date
     assert not (folder / "partial").exists()
@@ -166,7 +180,7 @@ def test_smaller_steps_carry_a_run_over_a_hard_place(layout):
     )
     shape, pantograph = cf.find_form(stiff), cf.library.pantograph(PANTOGRAPH)
     coarse, fine = (
-        cf.simulate(shape, [pantograph], speed=200 / 3.6, time=cf.TimeSettings(step=step))
+        cf.simulate(shape, [pantograph], speed=200 / 3.6, time=cf.TimeSettings(step=step), method="exudyn")
         for step in (8e-3, 2e-3)
     )
     assert [w for w in coarse.warnings if "on from there in steps of" in w]
@@ -182,7 +196,7 @@ def test_a_run_that_is_stopped_by_a_signal(start, layout, finished, tmp_path, nu
     folder = tmp_path / "run"
     folder.mkdir()
     (folder / "run.nc").write_bytes((finished / "run.nc").read_bytes())  # of a run before
-    process = start("run", layout, *OPTIONS, "--time-step-ms", "0.2", "-o", folder)
+    process = start("run", layout, *OPTIONS, "--time-step-ms", "0.2", "--method", "exudyn", "-o", folder)
     wait_until(lambda: list(folder.glob(".part-*")), process)
     time.sleep(3)  # form finding, and some hundred steps
     os.killpg(process.pid, number)

@@ -49,10 +49,11 @@ def simulate(layout, options):
     "options",
     [
         [*OPTIONS, "--store-wire-ms", "4"],
+        [*OPTIONS, "--method", "exudyn", "--store-wire-ms", "8"],
         [*LINEAR, "--store-wire-ms", "8"],
         pytest.param([*LINEAR[:-3], "0.05", *LINEAR[-2:], "--store-wire-ms", "0.05"], marks=pytest.mark.slow),
     ],
-    ids=["nonlinear", "linearised", "large"],
+    ids=["nonlinear", "exudyn", "linearised", "large"],
 )
 def test_the_prediction_is_near_what_is_taken(layout, tmp_path, options):
     words = ["run", str(layout), *options, "--quiet", "-o", str(tmp_path / "run")]
