@@ -76,7 +76,7 @@ def make_run(
         ):
             _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
     attributes = _provenance(shape, pantographs, speed, time, method)
-    attributes["warnings"] = json.dumps(list(warnings))
+    attributes["warnings"] = json.dumps([*warnings, *journey.notes])
     return Run(xr.Dataset(variables, coordinates, attributes))
 
 

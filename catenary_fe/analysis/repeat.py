@@ -40,8 +40,10 @@ class Repetition:
 def repeat(run: Run, progress: Callable[[float], None] | None = None) -> Repetition:
     """Run again what a run recorded: layout, pantographs, speed, starts, mesh and time settings.
 
-    Raises InputError for a record that this version does not understand.
+    Raises InputError for a partial run, and a record that this version does not understand.
     """
+    if run.partial:
+        raise InputError(f"{run.partial}: start it again with the command in its inputs.json")
     shape, again = _again(run, progress)
     if again.time.size != run.time.size:
         raise InputError(f"the repeated run has {again.time.size} times, not {run.time.size}: other settings")

@@ -6,6 +6,7 @@ import logging
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
@@ -16,7 +17,9 @@ from catenary_fe.analysis.compiled import COMPILED
 from catenary_fe.analysis.linear_start import can_be_compiled
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.mean_force import MeanForce
+from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run
+from catenary_fe.analysis.resources import check_memory, demand
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
@@ -75,9 +78,10 @@ def simulate(
         the static state, many times faster: slack droppers and contact are solved in each step, large motions
         are not there. It warns where they matter.
 
-    Raises InputError for a speed in the wrong unit, a run that would end beyond the line, a pantograph that
-    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
-    the mean force is not reached.
+    Raises InputError for a speed in the wrong unit, a run that would end beyond the line or take more memory
+    than there is, a pantograph that the air pushes down or a contact wire that leaves the head sideways,
+    SolverError where a solve fails or the mean force is not reached, Interrupted after Ctrl-C; both have the
+    run until then as ``partial``.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
@@ -89,6 +93,10 @@ def simulate(
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
     plan = plan_run(shape, len(pantographs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
+    steps = int(plan.distance / (speed * time.step))
+    shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
+    needs = demand(shape.catenary, shape.mesh, pantographs, steps, shapes, method)
+    check_memory(needs, f"run at {3.6 * speed:g} km/h")
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     for warning in warnings:
         _log.warning(warning)
@@ -107,8 +115,11 @@ def simulate(
     steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
     while True:
         pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
-        journey = drive(pairs, speed, plan.start, steps, progress)
-        run = make_run(shape, pantographs, force.uplifts, speed, time, journey, warnings, method)
+        label = partial(
+            make_run, shape, pantographs, force.uplifts, speed, time, warnings=warnings, method=method
+        )
+        with kept_when_stopped(label, steps * time.step):
+            run = label(drive(pairs, speed, plan.start, steps, progress))
         run = Run(run.data, clock.perf_counter() - begin)
         if force.reached(run):
             return run

@@ -6,6 +6,9 @@ import hashlib
 import json
 import logging
 import os
+import signal
+import threading
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -19,16 +22,18 @@ import numpy as np
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.linear_arrays import LANES
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.analysis.simulate import Method, plan_run, simulate
+from catenary_fe.analysis.sweep_store import Record, Store, open_store
 from catenary_fe.equilibrium import Shape, find_form
-from catenary_fe.fe.mesh import MeshSettings
+from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
 
 Progress = Callable[[int, int], None]
-Record = dict[str, Any]
+LOST = "lost"  # marks the record of a case that was killed: it is not kept
 _log = logging.getLogger(__name__)
 
 
@@ -91,67 +96,73 @@ def run_sweep(
     A record has ``values``, and either ``summary`` (see :meth:`Run.summary`) or ``error``. Each is written
     into ``folder/cases`` as soon as it is there: a sweep that was stopped goes on from where it was.
 
-    jobs : number of processes, -1: one a core
+    jobs : number of processes, -1: one a core, fewer where the memory has no room for so many
     scheduler : address of a Dask cluster to run on instead
     retry : run cases again that failed
     progress : called with the numbers of cases done and of all cases
 
-    Raises InputError if the folder cannot be written or the cluster is not there, SolverError if a worker
-    process dies.
+    A case whose worker process is killed is tried again; where that happens also when it runs alone, its
+    record says ``error`` and ``lost``, and it is tried again at the next start.
+
+    Raises InputError if the folder cannot be written, another process writes there, the memory has no room,
+    or the cluster is not there.
     """
-    store = _Store(Path(folder) / "cases", settings)
+    with open_store(Path(folder) / "cases") as store:
+        return _run_missing(cases, settings, store, jobs, scheduler, retry, progress)
+
+
+def _run_missing(
+    cases: Sequence[SweepCase | BrokenCase],
+    settings: SweepSettings,
+    store: Store,
+    jobs: int,
+    scheduler: str | None,
+    retry: bool,
+    progress: Progress | None,
+) -> list[Record]:
     records = [
-        _failed(case.error) if isinstance(case, BrokenCase) else store.read(case, retry) for case in cases
+        _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case.key(settings), retry)
+        for case in cases
     ]
     missing = [i for i, record in enumerate(records) if record is None]
     done = len(cases) - len(missing)
     if done:
         _log.info("%d of %d cases are there already", done, len(cases))
     to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
-    for numbers, found in _spread(
-        _tasks(to_run, settings, _workers(jobs)), to_run, settings, jobs, scheduler
-    ):
+    workers = _workers(jobs)
+    if to_run and not scheduler:
+        needs = _largest_demand(list(to_run.values()), settings)
+        workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
+        check_memory(needs, "sweep", workers)
+    tasks = _tasks(to_run, settings, workers)
+    for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
         for i, record in zip(numbers, found, strict=True):
             records[i] = record
-            store.write(to_run[i], record)
+            if LOST not in record:
+                store.write(to_run[i].key(settings), record)
         done += len(numbers)
         if progress:
             progress(done, len(cases))
     return [record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record]
 
 
-class _Store:
-    """Records of finished cases, one file each."""
+def _kept(store: Store, key: str, retry: bool) -> Record | None:
+    """The record of a case that is finished; of one that failed only if it shall not be tried again."""
+    record = store.read(key)
+    if record is None or ("summary" in record) == ("error" in record):
+        return None
+    return None if retry and "error" in record else record
 
-    def __init__(self, folder: Path, settings: SweepSettings) -> None:
-        self._folder, self._settings = folder, settings
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"{folder}: cannot be written: {error.strerror or error}") from None
 
-    def _path(self, case: SweepCase) -> Path:
-        return self._folder / f"{case.key(self._settings)}.json"
-
-    def read(self, case: SweepCase, retry: bool) -> Record | None:
-        try:
-            record: Record = json.loads(self._path(case).read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError):
-            return None  # a damaged file: run the case again
-        if not isinstance(record, dict) or ("summary" in record) == ("error" in record):
-            return None
-        return None if retry and "error" in record else record
-
-    def write(self, case: SweepCase, record: Record) -> None:
-        path = self._path(case)
-        aside = path.with_suffix(".part")
-        try:
-            aside.write_text(json.dumps(record, allow_nan=False, indent=1), encoding="utf-8")
-            os.replace(aside, path)
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Demand:
+    """Of a process at its largest: the longest line at the lowest speed, in all lanes."""
+    longest = max(cases, key=lambda case: case.catenary.length)
+    most = max(cases, key=lambda case: len(case.pantographs))
+    speed = min(case.speed for case in cases)
+    steps = int(longest.catenary.length / (speed * settings.time.step)) if speed > 0 else 0
+    lanes = min(LANES, len(cases)) if settings.method == "linearised" else 1
+    mesh = make_mesh(longest.catenary, settings.mesh)
+    return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, lanes)
 
 
 def _workers(jobs: int) -> int:
@@ -177,38 +188,106 @@ def _spread(
     tasks: Sequence[list[int]],
     cases: Mapping[int, SweepCase],
     settings: SweepSettings,
-    jobs: int,
+    workers: int,
     scheduler: str | None,
 ) -> Iterator[tuple[list[int], list[Record]]]:
-    """Results of the tasks as they come."""
-    from joblib import Parallel, delayed
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
+    """Results of the tasks as they come.
 
-    if not tasks:
-        return
-    with _engine(scheduler):
+    Where a worker process dies, what is not finished is tried again; where more of them die, with half as
+    many at a time. A case whose process dies while it runs alone is recorded as lost.
+    """
+    left, deaths = [list(task) for task in tasks], 0
+    while left:
+        alone = deaths > 0 and workers == 1
+        batch = left[:1] if alone else list(left)
+        processes = max(2, workers) if deaths else min(workers, len(batch))  # one: in this process
+        try:
+            for numbers, found in _in_parallel(batch, cases, settings, processes, scheduler):
+                left.remove(numbers)
+                yield numbers, found
+        except _deadly(scheduler):
+            deaths += 1
+            _log.warning("a worker process died; what it was at is tried again")
+            if not alone:
+                workers = workers if deaths == 1 and workers > 1 else max(1, workers // 2)
+            elif len(batch[0]) > 1:
+                left[:1] = [[number] for number in batch[0]]
+            else:
+                yield left.pop(0), [_lost()]
+
+
+def _in_parallel(
+    tasks: Sequence[list[int]],
+    cases: Mapping[int, SweepCase],
+    settings: SweepSettings,
+    processes: int,
+    scheduler: str | None,
+) -> Iterator[tuple[list[int], list[Record]]]:
+    from joblib import Parallel, delayed
+
+    with _engine(scheduler), _manager_may_stumble():
         parallel = Parallel(
-            n_jobs=-1 if scheduler else min(_workers(jobs), len(tasks)),
+            n_jobs=-1 if scheduler else processes,
             return_as="generator_unordered",
             batch_size=1,
             pre_dispatch="all",
         )
-        work = (delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
-        try:
-            yield from parallel(work)
-        except TerminatedWorkerError:
-            raise SolverError(
-                "a worker process was killed, perhaps for lack of memory; finished cases are kept: start the"
-                " sweep again, with fewer jobs"
-            ) from None
+        yield from parallel(delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C goes to all processes of a terminal: the one that started the others ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _manager_may_stumble() -> Iterator[None]:
+    """Say nothing where work that is taken away at an interruption trips up the thread that hands it out.
+
+    Nor that it is taken away.
+    """
+    usual = threading.excepthook
+
+    def hook(caught: threading.ExceptHookArgs) -> None:
+        if not (type(caught.thread).__name__ == "_ExecutorManagerThread" and caught.exc_type is KeyError):
+            usual(caught)
+
+    threading.excepthook = hook
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
+            yield
+    finally:
+        threading.excepthook = usual
+
+
+def _deadly(scheduler: str | None) -> tuple[type[Exception], ...]:
+    """What is raised where a worker process dies."""
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    if scheduler is None:
+        return (TerminatedWorkerError,)
+    from dask.distributed import KilledWorker
+
+    return TerminatedWorkerError, KilledWorker
+
+
+def _lost() -> Record:
+    error = SolverError(
+        "the process that ran this case was killed, also when it ran alone, perhaps for lack of memory; start"
+        " the sweep again to try once more, on a larger machine or with a shorter line"
+    )
+    return _failed(error) | {LOST: True}
 
 
 @contextmanager
 def _engine(scheduler: str | None) -> Iterator[None]:
-    if scheduler is None:
-        yield
-        return
     import joblib
+
+    if scheduler is None:
+        with joblib.parallel_config("loky", initializer=_leave_interrupts):
+            yield
+        return
 
     try:
         from dask.distributed import Client
@@ -250,8 +329,8 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
             plan = plan_run(shape, len(case.pantographs), case.positions or None)
             first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
             check_heads(shape, case.pantographs, first, last)
-            warnings = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
-            good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, warnings))
+            doubts = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
+            good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, doubts))
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))

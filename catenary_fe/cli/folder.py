@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from catenary_fe.results.files import ASIDE, cannot_be_written, locked, replace_all, written_aside
 from catenary_fe.system import InputError
 
 if TYPE_CHECKING:
@@ -21,10 +21,20 @@ if TYPE_CHECKING:
 
 
 class Folder:
-    """Files written aside, to be moved into place together."""
+    """Files written aside, to be moved into place together.
+
+    path : where to write them
+    kept : whether files were moved into place already
+    """
 
     def __init__(self, aside: Path) -> None:
         self.path = aside
+        self.kept = False
+
+    def keep(self) -> None:
+        """Move what is written so far into place: what fails later does not take it along."""
+        replace_all(self.path, self.path.parent)
+        self.kept = True
 
     def json(self, name: str, value: Any) -> None:
         """Write a JSON file."""
@@ -53,9 +63,8 @@ def save_picture(path: Path, ax: Axes) -> None:
     assert figure is not None
     try:
         metadata = {"Software": None} if path.suffix == ".png" else None
-        figure.savefig(path, dpi=130, metadata=metadata)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        with written_aside(path) as aside:
+            figure.savefig(aside, dpi=130, metadata=metadata)
     except ValueError as error:  # an unknown format
         raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
 
@@ -64,35 +73,31 @@ def save_picture(path: Path, ax: Axes) -> None:
 def output_folder(path: str | None) -> Iterator[Folder | None]:
     """Make sure that the folder can be written before the work starts; move the files there after it.
 
-    Raises InputError if the folder cannot be written. If the work fails, nothing is left behind.
+    Meanwhile no other process writes there. Raises InputError if the folder cannot be written or is taken. If
+    the work fails, nothing is left behind but what was kept before.
     """
     if path is None:
         yield None
         return
     target = _named(path)
-    made = _first_missing(target)
+    missing = [p for p in (target, *target.parents) if not p.exists()]
+    folder = None
     try:
         target.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=".part-", dir=target))
+        with locked(target):
+            for remains in target.glob(f"{ASIDE}*"):  # of processes that were killed
+                _remove(remains)
+            folder = Folder(Path(tempfile.mkdtemp(prefix=ASIDE, dir=target)))
+            try:
+                yield folder
+                folder.keep()
+            finally:
+                _remove(folder.path)
     except OSError as error:
-        _remove(made)
-        reason = error.strerror or str(error)
-        raise InputError(
-            f"output folder {path}: cannot be written ({reason}); choose another folder"
-        ) from None
-    try:
-        yield Folder(aside)
-        for file in sorted(aside.iterdir()):
-            os.replace(file, target / file.name)
-    except OSError as error:
-        _remove(aside)
-        _remove(made)
-        raise InputError(f"output folder {path}: {error.strerror or error}") from None
-    except BaseException:
-        _remove(aside)
-        _remove(made)
-        raise
-    aside.rmdir()
+        raise InputError(f"output folder {cannot_be_written(path, error)}") from None
+    finally:
+        if folder is None or not folder.kept:
+            _unmake(missing)
 
 
 def writable_folder(path: str) -> Path:
@@ -102,10 +107,7 @@ def writable_folder(path: str) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(
-            f"output folder {path}: cannot be written ({reason}); choose another folder"
-        ) from None
+        raise InputError(f"output folder {cannot_be_written(path, error)}") from None
     return folder
 
 
@@ -125,12 +127,36 @@ def run_in(path: str | Path) -> Run:
     return load_run(path / "run.nc" if path.is_dir() else path)
 
 
-def _first_missing(path: Path) -> Path | None:
-    """The outermost folder that will have to be made, or None if the whole path exists."""
-    missing = [p for p in (path, *path.parents) if not p.exists()]
-    return missing[-1] if missing else None
+def read_record(path: Path) -> dict[str, Any]:
+    """What a command wrote into a run's folder as JSON; empty where that is not there any more.
+
+    Raises InputError where it is damaged.
+    """
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(
+            f"{path}: damaged: not JSON ({str(error).splitlines()[0]}); take a copy, or remove it to go on"
+            " without"
+        ) from None
+    if not isinstance(found, dict):
+        raise InputError(f"{path}: damaged: not a JSON object; take a copy, or remove it to go on without")
+    return found
 
 
-def _remove(path: Path | None) -> None:
-    if path is not None:
+def _unmake(folders: Sequence[Path]) -> None:
+    """Remove folders that were made for nothing, inner ones first, unless others have put something there."""
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
         shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from catenary_fe.cli.folder import Folder
+from catenary_fe.cli.folder import Folder, read_record
 from catenary_fe.results import Run
+from catenary_fe.system import InputError
 
 
 @dataclass(frozen=True)
@@ -56,11 +57,16 @@ class InputFiles:
 
 
 def changed_files(folder: Path) -> list[str]:
-    """Names of the kept files that are not as the run found them; none where no record of them is left."""
-    try:
-        sums = dict(json.loads((folder / "inputs.json").read_text(encoding="utf-8"))["files_sha256"])
-    except (OSError, ValueError, TypeError, KeyError):
-        return []
+    """Names of the kept files that are not as the run found them; none where no record of them is left.
+
+    Raises InputError where the record is damaged.
+    """
+    sums = read_record(folder / "inputs.json").get("files_sha256", {})
+    if not isinstance(sums, dict):
+        raise InputError(
+            f"{folder / 'inputs.json'}: damaged: files_sha256 is no table; take a copy, or remove it to go on"
+            " without"
+        )
     return [
         name
         for name, before in sums.items()

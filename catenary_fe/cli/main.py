@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import logging
+import os
+import signal
 import sys
+from typing import Any
 
 import click
 
@@ -23,7 +26,7 @@ from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
 from catenary_fe.cli.view import view
-from catenary_fe.system import CatenaryError
+from catenary_fe.system import CatenaryError, InputError, Interrupted
 
 EPILOG = """\b
 Examples:
@@ -33,7 +36,8 @@ Examples:
   catenary-fe report run300
   catenary-fe compare run250 run300
 
-Exit codes: 0 good, 1 a criterion or a validation missed, 2 usage, 3 bad input, 4 solver."""
+Exit codes: 0 good, 1 a criterion or a validation missed, 2 usage, 3 bad input, 4 solver, 130 or 143
+stopped by Ctrl-C or SIGTERM."""
 
 MOST_LINES = 20  # of one error: a slip in a span repeats in all spans like it
 
@@ -85,6 +89,7 @@ def main(arguments: list[str] | None = None) -> int:
     logging.getLogger("catenary_fe").addHandler(logging.NullHandler())  # warnings are printed with results
     try:
         result = commands.main(arguments, prog_name="catenary-fe", standalone_mode=False)
+        sys.stdout.flush()
         return result if isinstance(result, int) else 0
     except CatenaryError as error:
         lines = str(error).splitlines()
@@ -96,14 +101,26 @@ def main(arguments: list[str] | None = None) -> int:
     except click.ClickException as error:
         error.show()
         return 2
-    except (click.Abort, KeyboardInterrupt):
+    except (click.Abort, KeyboardInterrupt) as stopped:
+        cause = stopped.__cause__ if isinstance(stopped, click.Abort) else stopped
         click.echo("interrupted", err=True)
-        return 130
+        return cause.exit_code if isinstance(cause, Interrupted) else Interrupted().exit_code
     except BrokenPipeError:
         sys.stderr.close()
         return 0
+    except OSError as error:
+        say("error", f"{error.filename or 'output'}: {error.strerror or error}", "red")
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 what is left in the old one has nowhere to go
+        return InputError.exit_code
 
 
 def entry() -> None:
     """Entry point of the installed command."""
+    signal.signal(signal.SIGTERM, _stop)
     sys.exit(main())
+
+
+def _stop(number: int, _frame: Any) -> None:
+    """Leave by the same door as after Ctrl-C: what is half done is put away, what is kept is kept."""
+    signal.signal(number, signal.SIG_IGN)  # once is enough
+    raise Interrupted(number)

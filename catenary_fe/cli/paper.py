@@ -17,6 +17,7 @@ import click
 
 from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, progress_bar, quiet_option
+from catenary_fe.results.files import write_text
 from catenary_fe.system import InputError
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet
 
     with progress_bar("figures of the paper", not quiet) as progress:
         entries = draw_all(scripts, folder, jobs, progress, say)
-    (folder / "index.html").write_text(index_page(TITLE, entries), encoding="utf-8")
+    write_text(folder / "index.html", index_page(TITLE, entries))
     failed = [entry.name for entry in entries if entry.failure]
     if as_json:
         drawn = {e.name: {"caption": e.caption, "numbers": e.numbers} for e in entries if not e.failure}

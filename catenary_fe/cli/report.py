@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any, get_args
 
 import click
 
-from catenary_fe.cli.folder import run_in
+from catenary_fe.cli.folder import read_record, run_in
 from catenary_fe.cli.terminal import progress_bar, quiet_option, working
+from catenary_fe.results.files import write_text
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError, PowerSystem
+from catenary_fe.system import PowerSystem
 
 _POINTS_A_SPAN = 20  # of the elasticity, besides droppers and supports
 
@@ -46,6 +46,7 @@ def report(
 
     run = run_in(folder)
     place = Path(folder) if Path(folder).is_dir() else Path(folder).parent
+    said = read_record(place / "summary.json")
     target = Path(output) if output else place / "report.html"
     with progress_bar("elasticity", not quiet) as progress:
         shape = shape_of(run)
@@ -53,7 +54,6 @@ def report(
             shape, spans=run.evaluated_spans[:2], points_per_span=_POINTS_A_SPAN, progress=progress
         )
     with working("pictures", not quiet):
-        said = _summary(place)
         page = report_page(
             run,
             shape,
@@ -61,21 +61,9 @@ def report(
             system=system or _known(said.get("criteria_system"), get_args(PowerSystem)) or "AC",
             filter=filter_kind or _known(said.get("filter"), get_args(FilterKind)) or "causal",
         )
-    try:
-        target.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written: {error.strerror or error}") from None
+    write_text(target, page)
     if not quiet:
         click.echo(f"{target}: {target.stat().st_size / 1e6:.1f} MB")
-
-
-def _summary(folder: Path) -> dict[str, Any]:
-    """The run's summary, where it is there."""
-    try:
-        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
 
 
 def _known(value: Any, choices: tuple[str, ...]) -> Any:

@@ -45,9 +45,9 @@ def rerun(folder: str, output: str | None, as_json: bool, quiet: bool) -> int:
         with progress_bar(f"run at {3.6 * run.speed:g} km/h again", not quiet) as progress:
             found = repeat(run, progress)
         if target:
-            write_run(target, found.shape, found.again, found.again.summary())
             for file in (f for pattern in INPUTS for f in Path(folder).glob(pattern)):
                 shutil.copyfile(file, target.path / file.name)
+            write_run(target, found.shape, found.again, found.again.summary())
     result = {
         "identical": found.identical,
         "largest_difference_of_contact_force_N": found.contact_force,

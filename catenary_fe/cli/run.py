@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
 from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
-from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.folder import Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.terminal import (
@@ -23,14 +26,17 @@ from catenary_fe.cli.terminal import (
     progress_bar,
     quiet_option,
     read_layout,
+    say,
     spans_option,
     warned,
     working,
 )
 from catenary_fe.system import (
     InputError,
+    Interrupted,
     Pantograph,
     PowerSystem,
+    SolverError,
     layout_warnings,
     load_pantograph,
 )
@@ -43,9 +49,15 @@ EPILOG = """\b
 Examples:
   catenary-fe run models/layouts/en50318_2002.toml --pantograph "EN 50318:2002" --speed-kmh 300 -o out
   catenary-fe run LAYOUT --pantograph my.toml --pantograph-at 110 10 --speed-kmh 250 --json
-  catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC"""
+  catenary-fe run LAYOUT --pantograph "EN 50318:2018 AC" --speed-kmh 275 --criteria AC
+
+\b
+Ten spans at 1 ms with the wires every 10 ms take 10 MB on disk and 0.4 GB of memory; what is too
+much for the machine is refused before the run. A run that is stopped or fails in the middle is kept
+in DIR/partial."""
 
 
+PARTIAL = "partial"  # folder inside the output folder
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
@@ -128,7 +140,9 @@ def run(
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
             shape = find_form(catenary, mesh)
-        with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress:
+        options = _options(click.get_current_context())
+        kept = partial_kept(output, shape, files, options, filter_kind)
+        with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress, kept:
             result = simulate(
                 shape,
                 pantographs,
@@ -145,9 +159,10 @@ def run(
             summary["criteria_system"] = system
             summary["criteria"] = [row.as_dict() for row in rows]
         if folder:
+            files.keep(folder, result, options)
             with working("pictures", not quiet):
                 write_run(folder, shape, result, summary, rows)
-            files.keep(folder, result, _options(click.get_current_context()))
+            forget_partial(folder)
     if as_json:
         print_json(summary)
     elif not quiet:
@@ -155,7 +170,7 @@ def run(
         if system:
             print_criteria(system, rows)
         if output:
-            click.echo(f"results and pictures in {output}")
+            click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
     if not as_json:
         print_warnings(summary["warnings"])
     return exit_code(rows)
@@ -180,6 +195,35 @@ def _options(context: click.Context) -> list[str]:
     return words
 
 
+@contextmanager
+def partial_kept(
+    output: str | None, shape: Shape, files: InputFiles, options: Sequence[str], filter_kind: Any
+) -> Iterator[None]:
+    """Where a run is stopped, write what there is of it into a folder inside the output folder."""
+    try:
+        yield
+    except (SolverError, Interrupted) as error:
+        if output and error.partial is not None:
+            place, run = str(Path(output) / PARTIAL), error.partial
+            try:
+                with output_folder(place) as folder:
+                    assert folder is not None
+                    files.keep(folder, run, options)
+                    write_run(folder, shape, run, run.summary(filter=filter_kind))
+                said = f"{run.partial.reached_s:.2f} of {run.partial.planned_s:.2f} s are kept in {place}"
+            except InputError as fault:
+                said = f"what there is of the run is lost: {fault}"
+            say("partial", said, "yellow")
+        raise
+
+
+def forget_partial(folder: Folder) -> None:
+    """Remove what an earlier run that was stopped left in the folder: now there is a whole one."""
+    place = folder.path.parent / PARTIAL
+    if (place / "summary.json").is_file() and "partial" in read_record(place / "summary.json"):
+        shutil.rmtree(place, ignore_errors=True)
+
+
 def write_run(
     folder: Folder, shape: Shape, result: Run, summary: dict[str, Any], rows: Sequence[Criterion] = ()
 ) -> None:
@@ -189,6 +233,7 @@ def write_run(
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
     folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    folder.keep()  # the run is safe whatever happens to its pictures
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
     folder.picture("contact_force.png", views.plot_contact_force(result))
@@ -234,6 +279,10 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
     )
+
+
+def _megabytes(folder: str) -> float:
+    return sum(file.stat().st_size for file in Path(folder).iterdir() if file.is_file()) / 1e6
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

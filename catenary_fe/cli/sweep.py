@@ -27,7 +27,8 @@ from catenary_fe.system import Catenary, InputError
 from catenary_fe.system.variation import PANTOGRAPH, Variable, varied_pantograph
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis.sweep import BrokenCase, Record, SweepCase
+    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
+    from catenary_fe.analysis.sweep_store import Record
 
 EPILOG = """\b
 Examples:
@@ -98,7 +99,7 @@ def sweep(
     quiet: bool,
 ) -> None:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
-    from catenary_fe.analysis.sweep import SweepSettings, run_sweep
+    from catenary_fe.analysis.sweep import LOST, SweepSettings, run_sweep
     from catenary_fe.fe import MeshSettings, TimeSettings
 
     axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
@@ -133,8 +134,15 @@ def sweep(
     for record in failed:
         said = ", ".join(f"{name} = {value}" for name, value in record["values"].items())
         click.echo(f"failed: {said}: {record['error']}", err=True)
-    if failed and len(failed) == len(records):
-        raise click.exceptions.Exit(failed[0]["exit_code"])
+    lost = [record for record in failed if LOST in record]
+    if lost:
+        click.echo(
+            f"{len(lost)} of {len(records)} cases were lost with their processes; the others are kept in"
+            f" {output}: start again to try the lost ones once more",
+            err=True,
+        )
+    if failed and (lost or len(failed) == len(records)):
+        raise click.exceptions.Exit((lost or failed)[0]["exit_code"])
 
 
 @contextmanager

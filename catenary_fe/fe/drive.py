@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import exudyn as exu
 import numpy as np
@@ -11,16 +12,22 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.contact import MovingContact, locate
 from catenary_fe.fe.energy import EnergyMeter
+from catenary_fe.fe.faults import most_strained, place_of_heads
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import release, solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.fe.stopped import FEWEST, Stopped
 from catenary_fe.fe.wire import hermite
-from catenary_fe.system import AnyPantograph, Catenary
+from catenary_fe.system import AnyPantograph, Catenary, SolverError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
+STRETCH = 25  # steps that are divided from where one failed
+MOST_PARTS = 8
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -41,6 +48,7 @@ class Journey:
     energy_times : [s]
     driven_work : [J], shape (times,), done by the moving bases, which drive the contact forces over the
         wire's inclination, or empty
+    notes : what to warn of in the result
     """
 
     time: Floats
@@ -56,6 +64,31 @@ class Journey:
     energy: Floats
     energy_times: Floats
     driven_work: Floats
+    notes: tuple[str, ...] = ()
+
+    def until(self, steps: int) -> Journey | None:
+        """The journey of the first steps, or None where those are too few to be of use."""
+        if steps < FEWEST:
+            return None
+        n, shapes = steps + 1, 0
+        if self.wire_times is not None:
+            shapes = int((self.wire_times <= self.time[steps]).sum())
+        energies = int((self.energy_times <= self.time[steps]).sum())
+        return replace(
+            self,
+            time=self.time[:n],
+            position=self.position[:, :n],
+            contact_force=self.contact_force[:, :n],
+            wire_height=self.wire_height[:, :n],
+            mass_heights=[heights[:, :n] for heights in self.mass_heights],
+            dropper_force=self.dropper_force[:, :n],
+            support_height=self.support_height[..., :n],
+            wire_z=[z[:shapes] for z in self.wire_z],
+            wire_times=None if self.wire_times is None else self.wire_times[:shapes],
+            energy=self.energy[:energies],
+            energy_times=self.energy_times[:energies],
+            driven_work=self.driven_work[:n],
+        )
 
 
 @dataclass(frozen=True)
@@ -88,7 +121,8 @@ def drive(
 ) -> Journey:
     """Run pantographs, each with its uplift [N], from static contact at their starts at constant speed.
 
-    Raises SolverError where a solve fails.
+    Raises SolverError where there is no static contact, Stopped with the journey until then where a step
+    fails or the user interrupts.
     """
     model = build_model(catenary, mesh, installation)
     items = add_pantographs(model, pantographs)
@@ -100,21 +134,55 @@ def drive(
     solve_static(mbs, what="static contact at the start")
     contact.settle_laws(lambda: solve_static(mbs, what="static contact at the start"))
     recorder = _Recorder(model, items, trip)
-    step = trip.time.step
-
-    def before_step(mbs: exu.MainSystem, end: float) -> bool:
-        count = round(end / step)
-        recorder.record(count - 1)
-        contact.move_to(trip.start + trip.speed * end, trip.speed)
-        if progress and count % 50 == 0:
-            progress(count / trip.steps)
-        return True
-
-    mbs.SetPreStepUserFunction(before_step)
-    solve_dynamic(mbs, steps=trip.steps, time=trip.time, what=f"run at {3.6 * trip.speed:g} km/h")
-    recorder.record(trip.steps)
-    release(mbs)
+    try:
+        _travel(model, contact, recorder, trip, progress)
+    except (SolverError, KeyboardInterrupt) as error:
+        raise Stopped(recorder.journey().until(recorder.done), error) from None
+    finally:
+        release(mbs)
     return recorder.journey()
+
+
+def _travel(
+    model: Model, contact: MovingContact, recorder: _Recorder, trip: Trip, progress: Progress | None
+) -> None:
+    """Step to the end; where a step fails, on from the state before it in smaller ones for a while.
+
+    Raises SolverError where the smallest ones fail, too.
+    """
+    what, parts = f"run at {3.6 * trip.speed:g} km/h", 1
+    while recorder.done < trip.steps:
+        first = max(recorder.done, 0)
+        last = trip.steps if parts == 1 else min(first + STRETCH, trip.steps)
+        time = replace(trip.time, step=trip.time.step / parts)
+
+        def before_step(end: float, step: float = time.step, parts: int = parts) -> None:
+            count = round(end / step)
+            if (count - 1) % parts == 0:
+                recorder.record((count - 1) // parts)
+            contact.move_to(trip.start + trip.speed * end, trip.speed)
+            if progress and count % (50 * parts) == 0:
+                progress(count / parts / trip.steps)
+
+        try:
+            solve_dynamic(
+                model.mbs,
+                steps=(last - first) * parts,
+                time=time,
+                what=what,
+                before_step=before_step,
+                begin=first * trip.time.step,
+            )
+            recorder.record(last)
+            parts = 1
+        except SolverError:
+            if parts == MOST_PARTS:
+                raise SolverError(recorder.failure(what)) from None
+            parts *= 2
+            recorder.note_smaller_steps(parts)
+        if recorder.done < trip.steps:
+            recorder.take_up()
+            contact.move_to(trip.start + trip.speed * trip.time.step * recorder.done, trip.speed)
 
 
 def raise_heads(model: Model, items: Sequence[PantographItems]) -> None:
@@ -166,10 +234,44 @@ class _Recorder:
         self._energy_every = round(trip.energy_interval / trip.time.step) if trip.energy_interval else 0
         self._meter = EnergyMeter(model.mbs) if trip.energy_interval else None
         self._energy: list[float] = []
+        self.done = -1  # last step on record
+        self._state = np.zeros(0), np.zeros(0)
+        self._notes: dict[float, int] = {}
+
+    def take_up(self) -> None:
+        """Make the last state on record the initial one."""
+        for set_values, values in zip(
+            (self._model.mbs.systemData.SetODE2Coordinates, self._model.mbs.systemData.SetODE2Coordinates_t),
+            self._state,
+            strict=True,
+        ):
+            for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
+                set_values(values, configuration=configuration)
+
+    def note_smaller_steps(self, parts: int) -> None:
+        """Remember for the result that steps were divided, and from when on."""
+        at = self._trip.time.step * self.done
+        _log.warning("no convergence after t = %.4f s: on in steps of 1/%d", at, parts)
+        self._notes[at] = parts
+
+    def failure(self, what: str) -> str:
+        """A failed run in words: when, where, what is strained, what to do."""
+        trip, catenary, n = self._trip, self._model.catenary, self.done
+        positions = trip.start + trip.speed * trip.time.step * n
+        forces = ", ".join(f"{f:.0f} N" for f in self._force[:, n])
+        strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
+        return (
+            f"{what}: no convergence after t = {trip.time.step * n:.4f} s with steps of {trip.time.step:g} s"
+            f" and of 1/{MOST_PARTS} of it; {place_of_heads(catenary, positions)}, contact force {forces};"
+            f" {strained + '; ' if strained else ''}look at the stiffness and uplift_force there, and try a"
+            " smaller time step"
+        )
 
     def record(self, n: int) -> None:
+        if n <= self.done:  # taken up again after smaller steps
+            return
         data = self._model.mbs.systemData
-        q = data.GetODE2Coordinates()
+        q, v = self._state = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
         output, force = self._model.mbs.GetObjectOutput, exu.OutputVariableType.Force
         for i, item in enumerate(self._items):
             self._force[i, n] = sum(output(c.connector, force)[c.wire.up] for c in item.contacts)
@@ -177,13 +279,14 @@ class _Recorder:
             self._masses[i][:, n] = q[self._mass_index[i]]
         self._support[:, :, n] = q[self._support_index]
         if self._stiffness.size:
-            self._dropper[:, n] = self._dropper_tension(q, data.GetODE2Coordinates_t())
+            self._dropper[:, n] = self._dropper_tension(q, v)
         if self._every and n % self._every == 0:
             self._wire.append(q[self._wire_index])
         if self._meter:
             self._add_work(n, q)
             if n % self._energy_every == 0:
                 self._energy.append(self._meter.energy())
+        self.done = n
 
     def _height_over(self, item: PantographItems) -> float:
         """[m] of the wire over a head, above its nominal height; the mean of its points of contact."""
@@ -246,4 +349,9 @@ class _Recorder:
             energy=np.array(self._energy),
             energy_times=time[:: self._energy_every] if self._meter else np.array([]),
             driven_work=self._work,
+            notes=tuple(
+                f"no convergence with the time step after {at:.4f} s: on from there in steps of 1/{parts} of"
+                f" it for {1e3 * STRETCH * trip.time.step:g} ms"
+                for at, parts in self._notes.items()
+            ),
         )

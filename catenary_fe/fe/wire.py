@@ -13,6 +13,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.fe.faults import remember_wire
 from catenary_fe.system import Wire
 
 Floats = NDArray[np.float64]
@@ -132,6 +133,8 @@ def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
         )
         for i, length in enumerate(line.lengths.tolist())
     ]
+    name = f"the wire '{wire.name}'" if wire.name else "a wire"
+    remember_wire(mbs, f"{name} under {wire.tension:g} N", line.x, nodes[0], 2 * line.axes)
     return WireItems(nodes, elements, wire, line)
 
 

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
+from catenary_fe.system import InputError
 from catenary_fe.system.current_collection import (
     DEVIATION_SHARE,
     MEAN_FORCE_TOLERANCE,
@@ -105,7 +106,11 @@ def criteria_rows(
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, no loss of contact, room for
     twice the uplift at steady arms that say how much they have (``uplift_room``), 0.7 of the wave speed.
+
+    Raises InputError for a partial run.
     """
+    if run.partial:
+        raise InputError(f"criteria: {run.partial}: only whole runs are judged")
     statistics = run.contact_force_statistics(filter=filter)
     rows: list[Criterion] = []
     for pantograph, figures in zip(run.pantographs, statistics, strict=True):

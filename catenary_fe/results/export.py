@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.files import cannot_be_written, written_aside
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import InputError
@@ -63,12 +64,12 @@ def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> l
         folder.mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():
             path = folder / f"{name}.csv"
-            with path.open("w", newline="", encoding="utf-8") as file:
+            with written_aside(path) as aside, aside.open("w", newline="", encoding="utf-8") as file:
                 writer = csv.writer(file)
                 writer.writerow(table)
                 rows = np.column_stack(list(table.values()))[::every]
                 writer.writerows([f"{value:.9g}" for value in row] for row in rows)
             written.append(path)
     except OSError as error:
-        raise InputError(f"{folder}: cannot be written ({error.strerror or error})") from None
+        raise InputError(cannot_be_written(folder, error)) from None
     return written

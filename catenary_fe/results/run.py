@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.checksum import ATTRIBUTE, checksum
+from catenary_fe.results.files import written_aside
 from catenary_fe.results.guards import Check, run_checks
+from catenary_fe.results.partial import Partial
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
 from catenary_fe.results.wires import WireHistory, wire_histories
@@ -66,6 +69,21 @@ class Run:
         """Numbers of the spans (from 1) that statistics are taken over."""
         return tuple(json.loads(self.data.attrs["evaluated_spans"]))
 
+    @property
+    def partial(self) -> Partial | None:
+        """Why and when the run ended before its time; None for a whole one."""
+        record = self.data.attrs.get("partial")
+        return Partial(**json.loads(record)) if record else None
+
+    @property
+    def reached(self) -> bool:
+        """Whether all pantographs passed all evaluated spans, which a partial run may not have done."""
+        return all(self._passed(i, self.evaluated_spans) for i in range(self.data.sizes["pantograph"]))
+
+    def _passed(self, pantograph: int, spans: Sequence[int]) -> bool:
+        end = self.data["support_position"].values[max(spans)]
+        return not self.partial or bool(self.data["position"].values[pantograph, -1] >= end)
+
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """The physics guards, each with value and bound. See :mod:`catenary_fe.results.guards`."""
@@ -75,7 +93,8 @@ class Run:
     def warnings(self) -> tuple[str, ...]:
         """What the program warned of before the run, and the checks that it failed."""
         failed = [f"check failed: {check}" for check in self.checks if not check.passed]
-        return (*json.loads(self.data.attrs["warnings"]), *failed)
+        partial = [str(self.partial)] if self.partial else []
+        return (*partial, *json.loads(self.data.attrs["warnings"]), *failed)
 
     @property
     def time(self) -> Floats:
@@ -94,7 +113,8 @@ class Run:
     def window(self, pantograph: int, spans: Sequence[int] | None = None) -> NDArray[np.bool_]:
         """Shape (times,): when a pantograph (from 0) is inside the given spans.
 
-        Raises InputError for spans that the line does not have or the pantograph does not reach.
+        Raises InputError for spans that the line does not have or the pantograph does not reach, or, in a
+        partial run, does not leave.
         """
         supports = np.asarray(self.data["support_position"].values)
         x = np.asarray(self.data["position"].values[pantograph])
@@ -106,6 +126,11 @@ class Run:
         if not inside.any():
             raise InputError(
                 f"pantograph {pantograph + 1} was never inside spans {list(spans or self.evaluated_spans)}"
+            )
+        if not self._passed(pantograph, spans or self.evaluated_spans):
+            raise InputError(
+                f"spans {list(spans or self.evaluated_spans)}: the run is partial and ended at {x[-1]:.1f} m,"
+                f" where pantograph {pantograph + 1} had not passed them: there are no statistics"
             )
         return inside
 
@@ -119,24 +144,36 @@ class Run:
 
         Raises InputError for spans outside the run.
         """
+        return [self._statistics(i, spans, filter) for i in range(self.data.sizes["pantograph"])]
+
+    def figures(self, filter: FilterKind = "causal") -> list[ForceStatistics | None]:
+        """Statistics over the evaluated spans; None where a partial run ended before them."""
         return [
-            force_statistics(
-                name=str(name),
-                force=np.asarray(self.data["contact_force"].values[i]),
-                height=np.asarray(self.data["wire_height"].values[i]),
-                inside=self.window(i, spans),
-                step=self.step,
-                filter=filter,
-            )
-            for i, name in enumerate(self.data["pantograph"].values)
+            self._statistics(i, None, filter) if self._passed(i, self.evaluated_spans) else None
+            for i in range(self.data.sizes["pantograph"])
         ]
+
+    def _statistics(self, i: int, spans: Sequence[int] | None, filter: FilterKind) -> ForceStatistics:
+        return force_statistics(
+            name=str(self.data["pantograph"].values[i]),
+            force=np.asarray(self.data["contact_force"].values[i]),
+            height=np.asarray(self.data["wire_height"].values[i]),
+            inside=self.window(i, spans),
+            step=self.step,
+            filter=filter,
+        )
 
     def filtered_contact_force(self, filter: FilterKind = "causal") -> Floats:
         """[N], shape (pantographs, times), low-passed at 20 Hz."""
         return low_pass(np.asarray(self.data["contact_force"].values), self.step, kind=filter)
 
     def largest_support_uplift(self, spans: Sequence[int] | None = None) -> float:
-        """[m] largest uplift of the contact wire at the supports of the given spans."""
+        """[m] largest uplift of the contact wire at the supports of the given spans.
+
+        Raises InputError where the run is partial and a pantograph has not passed them.
+        """
+        for i in range(self.data.sizes["pantograph"] if self.partial else 0):
+            self.window(i, spans)
         numbers = spans or self.evaluated_spans
         supports = sorted({s for n in numbers for s in (n - 1, n)})
         return float(self.data["support_uplift"].values[supports].max())
@@ -144,13 +181,18 @@ class Run:
     def summary(self, filter: FilterKind = "causal") -> dict[str, Any]:
         """Key figures in display units, ready for JSON."""
         simulated = float(self.time[-1])
-        return {
+        names = [str(name) for name in self.data["pantograph"].values]
+        figures = self.figures(filter)
+        return ({"partial": self.partial.as_dict()} if self.partial else {}) | {
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
             "evaluated_spans": list(self.evaluated_spans),
             "filter": filter,
-            "pantographs": [s.as_dict() for s in self.contact_force_statistics(filter=filter)],
-            "max_support_uplift_mm": 1e3 * self.largest_support_uplift(),
+            "pantographs": [
+                s.as_dict() if s else ForceStatistics.none_as_dict(name)
+                for s, name in zip(figures, names, strict=True)
+            ],
+            "max_support_uplift_mm": 1e3 * self.largest_support_uplift() if self.reached else None,
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
@@ -160,14 +202,10 @@ class Run:
 
     def save(self, path: str | Path) -> Path:
         """Write all data as netCDF (classic format: any program reads it). Raises InputError if it cannot."""
-        path = Path(path)
-        aside = path.with_name(path.name + ".part")
-        try:
-            self.data.drop_encoding().to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
-            aside.replace(path)
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
-        return path
+        sealed = self.data.drop_encoding().assign_attrs({ATTRIBUTE: checksum(self.data)})
+        with written_aside(path) as aside:
+            sealed.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
+        return Path(path)
 
     def plot_contact_force(self, ax: Axes | None = None) -> Axes:
         """Contact force along the line. See :func:`catenary_fe.views.plot_contact_force`."""
@@ -204,7 +242,15 @@ def load_run(path: str | Path) -> Run:
     except FileNotFoundError:
         raise InputError(f"{path}: no such file; give the run.nc of a run's folder") from None
     except Exception as error:  # netCDF readers raise what they like on damaged bytes
-        raise InputError(f"{path}: not a readable netCDF file ({type(error).__name__})") from None
+        raise InputError(
+            f"{path}: not a readable netCDF file ({type(error).__name__}): cut off, damaged, or something"
+            " else; run again, or take a copy"
+        ) from None
     if data.attrs.get("format") != FORMAT:
         raise InputError(f"{path}: not a run of catenary_fe (format {data.attrs.get('format')!r})")
+    if data.attrs.pop(ATTRIBUTE, None) != checksum(data):
+        raise InputError(
+            f"{path}: damaged: its content is not what its checksum says; run again, or take a copy (a file"
+            " that is changed on purpose is to be written with Run.save)"
+        )
     return Run(data)

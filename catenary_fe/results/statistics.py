@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +53,13 @@ class ForceStatistics:
             "contact_loss_percent": 100 * self.contact_loss,
             "contact_point_range_mm": 1e3 * self.contact_point_range,
         }
+
+    @classmethod
+    def none_as_dict(cls, pantograph: str) -> dict[str, float | str | None]:
+        """As :meth:`as_dict`, with nothing in it: of spans that were not passed."""
+        names = [f.name for f in fields(cls) if f.name not in ("pantograph", "filter")]
+        empty = cls(pantograph=pantograph, filter="causal", **dict.fromkeys(names, float("nan")))
+        return dict.fromkeys(empty.as_dict()) | {"name": pantograph}
 
     def __str__(self) -> str:
         return (

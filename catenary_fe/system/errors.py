@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from signal import SIGINT
+from typing import Any
+
 
 class CatenaryError(Exception):
     """Root of all errors of catenary_fe. Its text is made for an engineer, not for a programmer."""
@@ -24,6 +27,27 @@ class InputError(CatenaryError, ValueError):
 
 
 class SolverError(CatenaryError, RuntimeError):
-    """A static or dynamic solve did not end well; the text says where, when and what to try."""
+    """A static or dynamic solve did not end well; the text says where, when and what to try.
+
+    partial : the run until then (:class:`catenary_fe.Run`), where one had begun
+    """
 
     exit_code = 4
+    partial: Any = None
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user or the machine asked the program to stop.
+
+    signal : number of the signal that did
+    partial : the run until then (:class:`catenary_fe.Run`), where one had begun
+    """
+
+    def __init__(self, signal: int = SIGINT, partial: Any = None) -> None:
+        super().__init__(signal)
+        self.signal, self.partial = int(signal), partial
+
+    @property
+    def exit_code(self) -> int:
+        """130 after Ctrl-C, 143 after SIGTERM, as shells have it."""
+        return 128 + self.signal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from catenary_fe.results import Run
+from catenary_fe.results.files import written_aside
 from catenary_fe.system import InputError
 from catenary_fe.views.scene import Scene, scene
 from catenary_fe.views.style import (
@@ -65,10 +67,8 @@ def film(
     frames = np.clip(np.round((wanted - stored[0]) / (stored[1] - stored[0])), 0, stored.size - 1)
     pictures = view.pictures(scene(run, frames.astype(np.int64)), progress)
     write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
-    try:
-        write(path, pictures, frames_per_second)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+    with written_aside(path) as aside:
+        write(aside, pictures, frames_per_second)
     return path
 
 
@@ -195,9 +195,8 @@ def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
     from PIL import Image
 
     try:
-        Image.fromarray(pixels).save(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
+        with written_aside(path) as aside:
+            Image.fromarray(pixels).save(aside)
     except ValueError as error:  # an unknown format
         raise InputError(f"{path}: {error}") from None
 
@@ -213,16 +212,26 @@ def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> 
 
 def _write_mp4(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:
     try:
-        from imageio_ffmpeg import write_frames
+        from imageio_ffmpeg import count_frames_and_secs, write_frames
     except ImportError:
         raise InputError(
-            f'{path}: MP4 needs the package imageio-ffmpeg: pip install "catenary_fe[film]"; or name a .gif'
+            'an MP4 film needs the package imageio-ffmpeg: pip install "catenary_fe[film]"; or name a .gif'
         ) from None
     path.touch()  # the encoder's own report of a path that cannot be written is a page long
     first = next(pictures)
     height, width, _ = first.shape
-    writer = write_frames(str(path), (width, height), fps=rate, quality=7, macro_block_size=2)
+    writer = write_frames(
+        str(path), (width, height), fps=rate, quality=7, macro_block_size=2, ffmpeg_log_level="quiet"
+    )
     writer.send(None)
-    for picture in (first, *pictures):
+    sent = 0
+    for picture in itertools.chain([first], pictures):
         writer.send(np.ascontiguousarray(picture))
+        sent += 1
     writer.close()
+    try:
+        written, _ = count_frames_and_secs(str(path))
+    except RuntimeError:
+        written = 0
+    if written != sent:  # the encoder itself does not say so
+        raise OSError(f"{written} of {sent} pictures arrived; the disk may be full")

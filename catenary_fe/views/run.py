@@ -18,13 +18,16 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     ax.axvspan(supports[min(spans) - 1], supports[max(spans)], color="#f3efe2", label="evaluated spans")
     filtered = run.filtered_contact_force()
     single = filtered.shape[0] == 1
-    for i, statistics in enumerate(run.contact_force_statistics()):
+    figures, names = run.figures(), run.data["pantograph"].values
+    for i, statistics in enumerate(figures):
         colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
         x = run.data["position"].values[i]
         if single:
             raw = run.data["contact_force"].values[i]
             ax.plot(x, raw, color="#b9c7d3", linewidth=0.6, label="unfiltered")
-        ax.plot(x, filtered[i], color=colour, linewidth=1.1, label=f"{statistics.pantograph}, 0 to 20 Hz")
+        ax.plot(x, filtered[i], color=colour, linewidth=1.1, label=f"{names[i]}, 0 to 20 Hz")
+        if statistics is None:
+            continue
         inside = x[run.window(i)]
         for value, style in (
             (statistics.mean, "-"),
@@ -40,10 +43,10 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     ax.margins(x=0.01)
     headroom(ax, 0.18)
     means = ", ".join(
-        f"mean {s.mean:.1f} N, σ {s.std:.1f} N, min {s.min:.0f} N, max {s.max:.0f} N"
-        for s in run.contact_force_statistics()
+        f"mean {s.mean:.1f} N, σ {s.std:.1f} N, min {s.min:.0f} N, max {s.max:.0f} N" for s in figures if s
     )
-    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: contact force ({means})"
+    said = means or "evaluated spans not passed"
+    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: contact force ({said})"
     return finish(ax, "position along the line (m)", "contact force (N)", title)
 
 

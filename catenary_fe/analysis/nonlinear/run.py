@@ -19,6 +19,7 @@ from catenary_fe.analysis.nonlinear.state import State
 from catenary_fe.analysis.nonlinear.steps import advance
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.fe.stopped import Stopped
 from catenary_fe.system import AnyPantograph, SolverError
 
 if TYPE_CHECKING:
@@ -63,7 +64,8 @@ class NonlinearCatenary:
     ) -> Journey:
         """Run pantographs, each with its uplift [N], from static contact at constant speed [m/s].
 
-        Raises SolverError where steps do not converge, not even much shorter ones.
+        Raises Stopped with the journey until then where steps do not converge, not even much shorter ones, or
+        the user interrupts.
         """
         from catenary_fe.fe.nonlinear_model import contact_start
 
@@ -77,11 +79,17 @@ class NonlinearCatenary:
         load_heads(heads, records, 0, self._scheme, start, steps)
         state = State.at(start, total, self._system, heads, sizes)
         self.iterations = 0
-        for first in range(0, steps, BLOCK):
-            count = min(BLOCK, steps - first)
-            self._advance(state, records, start, count)
-            if progress:
-                progress((first + count) / steps)
+        done = 0
+        try:
+            while done < steps:
+                count = min(BLOCK, steps - done)
+                self._advance(state, records, start, count)
+                done += count
+                if progress:
+                    progress(done / steps)
+        except (SolverError, KeyboardInterrupt) as error:
+            journey = read_journey(records, heads, 0, start, steps, h, shape)
+            raise Stopped(journey.until(done), error) from None
         return read_journey(records, heads, 0, start, steps, h, shape)
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:

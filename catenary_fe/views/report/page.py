@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.results import Elasticity, Run, criteria_rows
+from catenary_fe.results import Criterion, Elasticity, Run, criteria_rows
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import InputError, Panhead, Pantograph, PowerSystem
 from catenary_fe.views import layout, plan, run_waves
@@ -39,16 +39,19 @@ def report_page(
     except InputError:
         motion = None
     non_uniformity = elasticity.non_uniformity if elasticity else None
-    rows = criteria_rows(run, system, non_uniformity=non_uniformity, filter=filter)
+    rows: list[Criterion] = []
+    if not run.partial:
+        rows = criteria_rows(run, system, non_uniformity=non_uniformity, filter=filter)
     spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
+        "partial": str(run.partial) if run.partial else "",
         "speed": f"{3.6 * run.speed:g}",
         "lead": _lead(run),
         "versions": json.loads(run.data.attrs["versions"]),
         "keys": tables.key_figures(run, filter),
         "criteria": tables.criteria_table(rows, system),
-        "verdict": tables.criteria_in_words(rows),
+        "verdict": tables.criteria_in_words(rows) if rows else f"Not judged. {run.partial}.",
         "warnings": run.warnings,
         "checks": tables.checks_table(run),
         "motion": motion is not None,
@@ -84,12 +87,13 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
     """Addresses of the pictures by name, the pictures inside them."""
     pictures = {
         "force": svg_address(run_pictures.plot_contact_force(run)),
-        "spectrum": svg_address(plot_force_spectrum(run)),
         "uplift": svg_address(run_pictures.plot_support_uplift(run)),
         "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
         "shape": svg_address(layout.plot_static_shape(shape, spans=run.evaluated_spans[:2])),
     }
+    if run.reached:
+        pictures["spectrum"] = svg_address(plot_force_spectrum(run))
     if shape.catenary.is_spatial:
         heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
         head = heads[0] if heads else Panhead()

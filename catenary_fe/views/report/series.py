@@ -26,7 +26,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
     way = run.speed * run.step * every
     x = np.minimum(np.arange(positions.min(), positions.max() + way / 2, way), positions.max())
     filtered, raw = run.filtered_contact_force(filter), run.data["contact_force"].values
-    names, statistics = run.data["pantograph"].values, run.contact_force_statistics(filter=filter)
+    names, statistics = run.data["pantograph"].values, run.figures(filter)
     series = []
     for i, name in enumerate(names):
         colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
@@ -38,6 +38,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
     lines = [
         {"value": round(value, 2), "colour": PANTOGRAPHS[i % len(PANTOGRAPHS)], "dashed": dashed}
         for i, s in enumerate(statistics)
+        if s
         for value, dashed in ((s.mean, False), (s.statistical_max, True), (s.statistical_min, True))
     ]
     return {"x": _numbers(x, 3), "series": series, "lines": lines, "band": _evaluated(run),
@@ -61,8 +62,10 @@ def uplift_chart(run: Run) -> dict[str, Any]:
         }
         for i in shown
     ]
-    inside = np.any([run.window(i) for i in range(run.data.sizes["pantograph"])], axis=0)
-    band = [float(run.time[inside][0]), float(run.time[inside][-1])]
+    supports, x = run.data["support_position"].values, run.data["position"].values
+    begin, end = supports[min(run.evaluated_spans) - 1], supports[max(run.evaluated_spans)]
+    inside = ((x >= begin) & (x <= end)).any(axis=0)
+    band = [float(t) for t in run.time[inside][[0, -1]]] if inside.any() else []
     return {"x": _numbers(run.time[::every], 4), "series": series, "lines": [], "band": band, "marks": []}
 
 

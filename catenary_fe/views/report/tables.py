@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.results import Criterion, Run, labels, missed
+from catenary_fe.results import Criterion, ForceStatistics, Run, labels, missed
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
 
@@ -35,7 +35,9 @@ def _is_number(text: str) -> bool:
 
 def key_figures(run: Run, filter: FilterKind) -> list[dict[str, str]]:
     """The first pantograph's figures to see at one glance, and the largest uplift."""
-    s = run.contact_force_statistics(filter=filter)[0]
+    s = run.figures(filter)[0]
+    if s is None or not run.reached:
+        return [{"name": "evaluated spans", "value": "not passed"}]
     return [
         {"name": "mean force", "value": f"{s.mean:.1f} N"},
         {"name": "standard deviation", "value": f"{s.std:.1f} N"},
@@ -47,7 +49,7 @@ def key_figures(run: Run, filter: FilterKind) -> list[dict[str, str]]:
 
 def statistics_table(run: Run, filter: FilterKind) -> Table:
     """Statistics of all pantographs over the evaluated spans."""
-    rows = (
+    rows: tuple[tuple[str, Callable[[ForceStatistics], str]], ...] = (
         ("mean force Fₘ (N)", lambda s: f"{s.mean:.1f}"),
         ("standard deviation σ (N)", lambda s: f"{s.std:.1f}"),
         ("of which 0 to 5 Hz (N)", lambda s: f"{s.std_0_5:.1f}"),
@@ -59,11 +61,12 @@ def statistics_table(run: Run, filter: FilterKind) -> Table:
         ("contact loss (% of the time)", lambda s: f"{100 * s.contact_loss:.2f}"),
         ("range of the contact point (mm)", lambda s: f"{1e3 * s.contact_point_range:.1f}"),
     )
-    found = run.contact_force_statistics(filter=filter)
+    found = run.figures(filter)
     spans = ", ".join(map(str, run.evaluated_spans))
     caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
-    names = [s.pantograph for s in found]
-    return Table(caption, ("", *names), [(name, *map(text, found)) for name, text in rows])
+    names = [str(name) for name in run.data["pantograph"].values]
+    cells = [(name, *(text(s) if s else "–" for s in found)) for name, text in rows]
+    return Table(caption, ("", *names), cells)
 
 
 def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
