@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,17 @@ class MeanForce:
         self._targets = [p.target_mean_force(speed) for p in pantographs]
         self._before: tuple[Floats, Floats] | None = None
         self._runs = 0
+
+    def state(self) -> dict[str, Floats]:
+        """What is known so far, as arrays."""
+        before = self._before or (self.uplifts, np.full_like(self.uplifts, np.nan))
+        return {"uplifts": self.uplifts, "before": np.array(before), "runs": np.array(float(self._runs))}
+
+    def go_on(self, state: Mapping[str, Floats]) -> None:
+        """Go on from a :meth:`state`."""
+        self.uplifts, self._runs = state["uplifts"], int(state["runs"])
+        uplifts, means = state["before"]
+        self._before = None if np.isnan(means).any() else (uplifts, means)
 
     def reached(self, run: Run) -> bool:
         """Whether a run with these uplifts has the means that are asked for; if not, other uplifts are set.
