@@ -75,9 +75,34 @@ def make_run(
             _wire_names(shape), journey.wire_x, journey.wire_z, shape.wires, strict=True
         ):
             _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
+    _add_balances(variables, coordinates, shape, journey)
     attributes = _provenance(shape, pantographs, speed, time, method)
     attributes["warnings"] = json.dumps([*warnings, *journey.notes])
     return Run(xr.Dataset(variables, coordinates, attributes))
+
+
+def _add_balances(
+    variables: dict[str, Any], coordinates: dict[str, Any], shape: Shape, journey: Journey
+) -> None:
+    """Energy, work and tension, as far as the run recorded them."""
+    if journey.lost_work is not None and journey.energy.size:
+        at = np.searchsorted(journey.time, journey.energy_times - 1e-9)
+        coordinates["energy_time"] = _labelled(
+            ("energy_time",), journey.energy_times, "s", "time of energies"
+        )
+        for name, values, words in (
+            ("energy", journey.energy - journey.energy[0], "kinetic and stored energy since the start"),
+            ("driven_work", journey.driven_work[at], "work done by the contacts"),
+            ("lost_work", journey.lost_work[at], "work lost in dampers"),
+        ):
+            variables[name] = _labelled(("energy_time",), values, "J", words)
+    if journey.tension_change is not None:
+        words = "largest relative change of a wire's tension in a span since the start"
+        coordinates["tension_time"] = _labelled(
+            ("tension_time",), journey.tension_times, "s", "time of tensions"
+        )
+        coordinates["wire"] = ("wire", _wire_names(shape))
+        variables["tension_change"] = _labelled(("wire", "tension_time"), journey.tension_change, "1", words)
 
 
 def _wire_names(shape: Shape) -> list[str]:

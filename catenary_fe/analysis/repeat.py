@@ -76,6 +76,7 @@ def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, R
         time=_settings(run)[1],
         store_wire=float(stored[1] - stored[0]) if stored is not None and stored.size > 1 else None,
         progress=progress,
+        energy="energy" in run.data,
         method=cast(Method, run.method),  # simulate refuses one that it does not know
     )
     return shape, again

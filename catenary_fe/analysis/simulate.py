@@ -32,6 +32,7 @@ Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 Method = Literal["nonlinear", "linearised", "exudyn"]
+ENERGY_INTERVAL = 0.05  # [s] between readings of the energy
 
 Pairs = Sequence[tuple[AnyPantograph, float]]
 Drive = Callable[[Pairs, float, Floats, int, Progress | None], "Journey"]
@@ -61,6 +62,7 @@ def simulate(
     store_wire: float | None = None,
     progress: Progress | None = None,
     method: Method = "nonlinear",
+    energy: bool = False,
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
@@ -77,17 +79,21 @@ def simulate(
         compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
         the static state, many times faster: slack droppers and contact are solved in each step, large motions
         are not there. It warns where they matter.
+    energy : record energy, work and losses of the whole system, which a check then judges; with the method
+        "exudyn" only, a quarter slower
 
-    Raises InputError for a speed in the wrong unit, a run that would end beyond the line or take more memory
-    than there is, a pantograph that the air pushes down or a contact wire that leaves the head sideways,
-    SolverError where a solve fails or the mean force is not reached, Interrupted after Ctrl-C; both have the
-    run until then as ``partial``.
+    Raises InputError for a speed in the wrong unit, energies of another method, a run that would end beyond
+    the line or take more memory than there is, a pantograph that the air pushes down or a contact wire that
+    leaves the head sideways, SolverError where a solve fails or the mean force is not reached, Interrupted
+    after Ctrl-C; both have the run until then as ``partial``.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
     check_speed(speed)
     if method not in get_args(Method):
         raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")
+    if energy and method != "exudyn":
+        raise InputError(f"energy: method '{method}' does not record it; take the method 'exudyn'")
     time = time or TimeSettings()
     if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
@@ -111,7 +117,7 @@ def simulate(
         return result
     begin = clock.perf_counter()
     compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
-    drive = _compiled(shape, time, store_wire) if compiled else _by_exudyn(shape, time, store_wire)
+    drive = _compiled(shape, time, store_wire) if compiled else _by_exudyn(shape, time, store_wire, energy)
     steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
     while True:
         pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
@@ -132,13 +138,15 @@ def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Dri
     return NonlinearCatenary(shape, time, store_wire).drive
 
 
-def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
+def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool) -> Drive:
     from catenary_fe.fe.drive import Trip, drive
+
+    every = max(ENERGY_INTERVAL, time.step) if energy else None
 
     def drive_it(
         pantographs: Pairs, speed: float, positions: Floats, steps: int, progress: Progress | None
     ) -> Journey:
-        trip = Trip(speed, positions, steps, time, wire_interval=store_wire)
+        trip = Trip(speed, positions, steps, time, wire_interval=store_wire, energy_interval=every)
         return drive(shape.catenary, shape.mesh, shape.installation, pantographs, trip, progress)
 
     return drive_it

@@ -13,6 +13,7 @@ from catenary_fe.cli.terminal import (
     output_option,
     print_json,
     print_table,
+    print_warnings,
     quiet_option,
     working,
 )
@@ -40,14 +41,16 @@ def compare(
 
     With -o, also pictures of forces, differences and uplifts, and a page comparison.html.
     """
-    from catenary_fe.results.comparison import input_differences, key_figures
+    from catenary_fe.results.comparison import failed_checks, input_differences, key_figures
 
     runs, labels = [run_in(folder) for folder in folders], _labels(folders)
+    failed = failed_checks(runs, labels)
     columns, inputs = key_figures(runs, labels, filter_kind), input_differences(runs)
     result: dict[str, Any] = {
         "inputs_that_differ": [{"name": d.name} | dict(zip(labels, d.values, strict=True)) for d in inputs],
         "runs": [{"label": column.label, **column.values} for column in columns],
         "filter": filter_kind,
+        "warnings": failed,
     }
     with output_folder(output) as folder, working("pictures", bool(output) and not quiet):
         if folder:
@@ -70,6 +73,8 @@ def compare(
             click.echo("the inputs are the same")
         table = figures_table(columns)
         print_table("what came out", table.columns, table.rows)
+    if not as_json:
+        print_warnings(failed)
 
 
 def _labels(folders: tuple[str, ...]) -> list[str]:

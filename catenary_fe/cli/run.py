@@ -98,6 +98,11 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     " films need.",
 )
 @click.option(
+    "--energy",
+    is_flag=True,
+    help="Record the whole system's energy and check its balance; with the method exudyn, a quarter slower.",
+)
+@click.option(
     "--criteria",
     "system",
     type=click.Choice(get_args(PowerSystem), case_sensitive=False),
@@ -117,6 +122,7 @@ def run(
     filter_kind: Any,
     spans: list[int] | None,
     store_wire_ms: float | None,
+    energy: bool,
     planar: bool,
     system: PowerSystem | None,
     output: str | None,
@@ -152,6 +158,7 @@ def run(
                 store_wire=store_wire_ms / 1e3 if store_wire_ms else None,
                 progress=progress,
                 method=method,
+                energy=energy,
             )
         summary = result.summary(filter=filter_kind)
         rows = judged(shape, result, system, filter_kind, quiet) if system else []
@@ -167,6 +174,7 @@ def run(
         print_json(summary)
     elif not quiet:
         _print_summary(catenary.name, summary)
+        print_checks(result)
         if system:
             print_criteria(system, rows)
         if output:
@@ -283,6 +291,14 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
 
 def _megabytes(folder: str) -> float:
     return sum(file.stat().st_size for file in Path(folder).iterdir() if file.is_file()) / 1e6
+
+
+def print_checks(run: Run) -> None:
+    """The physics guards as a table."""
+    rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
+    failed = len(run.failed_checks)
+    title = f"checks: {failed} of {len(rows)} failed" if failed else f"checks: all {len(rows)} passed"
+    print_table(title, ("check", "value", "bound", "verdict"), rows)
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

@@ -250,7 +250,11 @@ def _rows(record: Record) -> list[dict[str, Any]]:
         | {"number": i}
         | {key: value for key, value in statistics.items() if key != "name"}
         | common
-        | {"warnings": len(summary["warnings"]), "error": ""}
+        | {
+            "checks_failed": "; ".join(c["name"] for c in summary["checks"] if not c["passed"]),
+            "warnings": len(summary["warnings"]),
+            "error": "",
+        }
         for i, statistics in enumerate(summary["pantographs"], start=1)
     ]
 
@@ -283,9 +287,14 @@ def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
     if any(row.get("number", 1) > 1 for row in rows):
         varied.append("number")
     table = [
-        [*(row.get(name, "") for name in varied), *(_shown(row, key) for key, _ in _FIGURES)] for row in rows
+        [
+            *(row.get(name, "") for name in varied),
+            *(_shown(row, key) for key, _ in _FIGURES),
+            row.get("checks_failed", ""),
+        ]
+        for row in rows
     ]
-    print_table("sweep", [*varied, *(title for _, title in _FIGURES)], table)
+    print_table("sweep", [*varied, *(title for _, title in _FIGURES), "checks failed"], table)
 
 
 def _shown(row: dict[str, Any], key: str) -> str:

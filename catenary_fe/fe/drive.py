@@ -10,8 +10,8 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.contact import MovingContact, locate
-from catenary_fe.fe.energy import EnergyMeter
+from catenary_fe.fe.contact import MovingContact
+from catenary_fe.fe.energy import EnergyLedger
 from catenary_fe.fe.faults import most_strained, place_of_heads
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
@@ -19,7 +19,7 @@ from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import release, solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.fe.stopped import FEWEST, Stopped
-from catenary_fe.fe.wire import hermite
+from catenary_fe.fe.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.system import AnyPantograph, Catenary, SolverError
 
 Floats = NDArray[np.float64]
@@ -44,10 +44,14 @@ class Journey:
     support_height : [m], shape (contact wires, spans + 1, times), of the contact wires at the supports
     wire_x, wire_z : [m], for each wire its stations (nodes,) and its heights (shape times, nodes), or none
     wire_times : [s], times of ``wire_z``
-    energy : [J], shape (energy_times,), kinetic and stored, or empty
+    energy : [J], shape (energy_times,), kinetic and stored, without the contacts', or empty
     energy_times : [s]
-    driven_work : [J], shape (times,), done by the moving bases, which drive the contact forces over the
-        wire's inclination, or empty
+    driven_work : [J], shape (times,), done on wires and masses by the contacts, or empty: what the moving
+        bases put in over the wire's inclination, less what the contacts store and damp
+    lost_work : [J], shape (times,), lost in the dampers of wires, droppers, supports and pantographs, or none
+    tension_change : shape (wires, tension_times), largest relative change of each wire's tension between two
+        supports since the start, or none
+    tension_times : [s]
     notes : what to warn of in the result
     """
 
@@ -64,6 +68,9 @@ class Journey:
     energy: Floats
     energy_times: Floats
     driven_work: Floats
+    lost_work: Floats | None = None
+    tension_change: Floats | None = None
+    tension_times: Floats | None = None
     notes: tuple[str, ...] = ()
 
     def until(self, steps: int) -> Journey | None:
@@ -74,6 +81,7 @@ class Journey:
         if self.wire_times is not None:
             shapes = int((self.wire_times <= self.time[steps]).sum())
         energies = int((self.energy_times <= self.time[steps]).sum())
+        tensions = 0 if self.tension_times is None else int((self.tension_times <= self.time[steps]).sum())
         return replace(
             self,
             time=self.time[:n],
@@ -88,6 +96,9 @@ class Journey:
             energy=self.energy[:energies],
             energy_times=self.energy_times[:energies],
             driven_work=self.driven_work[:n],
+            lost_work=None if self.lost_work is None else self.lost_work[:n],
+            tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
+            tension_times=None if self.tension_times is None else self.tension_times[:tensions],
         )
 
 
@@ -229,11 +240,15 @@ class _Recorder:
         self._wire_index = width * np.arange(mesh.first_nodes[-1]) + up
         self._every = round(trip.wire_interval / trip.time.step) if trip.wire_interval else 0
         self._wire: list[Floats] = []
-        self._work = np.zeros(n if trip.energy_interval else 0)
-        self._shape_before: Floats | None = None
         self._energy_every = round(trip.energy_interval / trip.time.step) if trip.energy_interval else 0
-        self._meter = EnergyMeter(model.mbs) if trip.energy_interval else None
-        self._energy: list[float] = []
+        self._ledger = (
+            EnergyLedger(model, items, trip.start, trip.steps, self._energy_every)
+            if trip.energy_interval
+            else None
+        )
+        lines = [wire.line for wire in model.wires]
+        self._tension = TensionRecord(TensionGauge(catenary, mesh, lines))
+        self._tension_every = max(1, round(INTERVAL / trip.time.step))
         self.done = -1  # last step on record
         self._state = np.zeros(0), np.zeros(0)
         self._notes: dict[float, int] = {}
@@ -278,14 +293,13 @@ class _Recorder:
             self._wire_height[i, n] = self._height_over(item)
             self._masses[i][:, n] = q[self._mass_index[i]]
         self._support[:, :, n] = q[self._support_index]
-        if self._stiffness.size:
-            self._dropper[:, n] = self._dropper_tension(q, v)
+        self._dropper[:, n], drag, length = self._dropper_forces(q, v)
         if self._every and n % self._every == 0:
             self._wire.append(q[self._wire_index])
-        if self._meter:
-            self._add_work(n, q)
-            if n % self._energy_every == 0:
-                self._energy.append(self._meter.energy())
+        if n % self._tension_every == 0:
+            self._tension.read(self._trip.time.step * n, q)
+        if self._ledger:
+            self._ledger.record(n, self._trip.speed * self._trip.time.step * n, (drag, length))
         self.done = n
 
     def _height_over(self, item: PantographItems) -> float:
@@ -294,36 +308,15 @@ class _Recorder:
         heights = [output(c.wire_marker, position)[c.wire.up] for c in item.contacts]
         return float(sum(heights) / len(heights) - self._model.contact_wire_height)
 
-    def _add_work(self, n: int, q: Floats) -> None:
-        """Work of a step as the trapezoidal rule has it: half of each end's force over the other's wire.
-
-        That is what force and wire exchange when the mean of two forces works along a step's displacement.
-        """
-        after, *_ = self._model.wire_shapes(q)
-        before, self._shape_before = self._shape_before, after
-        if before is None:
-            return
-        way = self._trip.speed * self._trip.time.step
-        x = self._trip.start + way * n
-        first = np.array([self._height(after, xi) - self._height(after, xi - way) for xi in x])
-        last = np.array([self._height(before, xi) - self._height(before, xi - way) for xi in x])
-        pushed = self._force[:, n - 1] @ first + self._force[:, n] @ last
-        self._work[n] = self._work[n - 1] - pushed / 2
-
-    def _height(self, shape: Floats, position: float) -> float:
-        element, local = locate(self._model.contact, position)
-        length = self._model.contact.line.lengths[element]
-        vertical = [self._model.axes - 1, -1]
-        return float(hermite(local / length, length) @ shape[element : element + 2, vertical].ravel())
-
-    def _dropper_tension(self, q: Floats, v: Floats) -> Floats:
+    def _dropper_forces(self, q: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
+        """Tensions [N], the dampers' part of them, and lengths [m], each of shape (droppers,)."""
         span = self._span + q[self._upper] - q[self._lower]
         length = np.linalg.norm(span, axis=1)
         stretch = length - self._model.dropper_lengths
         rate = ((v[self._upper] - v[self._lower]) * span).sum(axis=1) / length
         spring = np.maximum(self._stiffness * stretch, 0.0)
-        force: Floats = spring + np.clip(self._damping * rate, -spring, spring)
-        return force
+        drag = np.clip(self._damping * rate, -spring, spring)
+        return spring + drag, drag, length
 
     def journey(self) -> Journey:
         trip, model = self._trip, self._model
@@ -346,9 +339,12 @@ class _Recorder:
             if self._wire
             else [],
             wire_times=time[:: self._every] if self._wire else None,
-            energy=np.array(self._energy),
-            energy_times=time[:: self._energy_every] if self._meter else np.array([]),
-            driven_work=self._work,
+            energy=self._ledger.energy if self._ledger else np.array([]),
+            energy_times=time[:: self._energy_every] if self._ledger else np.array([]),
+            driven_work=self._ledger.work if self._ledger else np.array([]),
+            lost_work=self._ledger.loss if self._ledger else None,
+            tension_change=self._tension.changes,
+            tension_times=self._tension.times,
             notes=tuple(
                 f"no convergence with the time step after {at:.4f} s: on from there in steps of 1/{parts} of"
                 f" it for {1e3 * STRETCH * trip.time.step:g} ms"

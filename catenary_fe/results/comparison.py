@@ -25,6 +25,7 @@ QUANTITIES = {
     "contact_point_range_mm": "range of the contact point (mm)",
     "max_support_uplift_mm": "largest uplift at a support (mm)",
     "slack_droppers": "droppers that went slack",
+    "checks_failed": "checks failed",
 }
 _LISTED = 12  # values by themselves
 
@@ -69,8 +70,19 @@ def key_figures(runs: Sequence[Run], labels: Sequence[str], filter: FilterKind =
             name = values.pop("name")
             several = run.data.sizes["pantograph"] > 1
             values |= {"max_support_uplift_mm": uplift, "slack_droppers": slack}
+            values["checks_failed"] = len(run.failed_checks)
             columns.append(Column(f"{label}: {name}" if several else label, values))
     return columns
+
+
+def failed_checks(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
+    """One line for each check that a run fails."""
+    return [
+        f"{label}: check failed: {check}"
+        for run, label in zip(runs, labels, strict=True)
+        for check in run.checks
+        if not check.passed
+    ]
 
 
 def input_differences(runs: Sequence[Run]) -> list[InputDifference]:

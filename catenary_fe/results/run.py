@@ -35,7 +35,8 @@ class Run:
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
         dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
-        were stored; each has ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions
+        were stored; tension_change and, where it was asked for, energy, driven_work and lost_work; each has
+        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions
         and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
@@ -88,6 +89,11 @@ class Run:
     def checks(self) -> tuple[Check, ...]:
         """The physics guards, each with value and bound. See :mod:`catenary_fe.results.guards`."""
         return run_checks(self)
+
+    @property
+    def failed_checks(self) -> tuple[str, ...]:
+        """Names of the physics guards that the run fails."""
+        return tuple(check.name for check in self.checks if not check.passed)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -197,6 +203,7 @@ class Run:
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
             "checks": [check.as_dict() for check in self.checks],
+            "checks_failed": list(self.failed_checks),
             "warnings": list(self.warnings),
         }
 
@@ -253,4 +260,11 @@ def load_run(path: str | Path) -> Run:
             f"{path}: damaged: its content is not what its checksum says; run again, or take a copy (a file"
             " that is changed on purpose is to be written with Run.save)"
         )
-    return Run(data)
+    run = Run(data)
+    try:
+        _ = run.catenary, run.pantographs, run.evaluated_spans, run.speed, run.method
+        settings, warnings = (json.loads(data.attrs[name]) for name in ("settings", "warnings"))
+        _ = dict(settings["mesh"]), dict(settings["time"]), list(warnings)
+    except (KeyError, TypeError, ValueError):
+        raise InputError(f"{path}: what it records of its inputs is damaged; run again") from None
+    return run

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.views.style import PANTOGRAPHS, finish, headroom, mark_supports, new_axes
+from catenary_fe.views.style import PANTOGRAPHS, finish, headroom, mark_supports, new_axes, note_failed
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def plot_force_comparison(
         axes.margins(x=0.01)
     finish(force, "", "contact force\n0 to 20 Hz (N)", "Contact force of the first pantographs")
     finish(difference, "position along the line (m)", "difference (N)", "")
-    chosen: Axes = force
+    chosen: Axes = note_all_failed(force, runs, labels)
     return chosen
 
 
@@ -59,7 +59,15 @@ def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Ax
     ax.set_ylim(bottom=0)
     headroom(ax, 0.2)
     ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
-    return finish(ax, "position along the line (m)", "largest uplift (mm)", "Largest uplift at the supports")
+    finish(ax, "position along the line (m)", "largest uplift (mm)", "Largest uplift at the supports")
+    return note_all_failed(ax, runs, labels)
+
+
+def note_all_failed(ax: Axes, runs: Sequence[Run], labels: Sequence[str]) -> Axes:
+    """Say under the title which run fails which checks."""
+    for run, label in zip(runs, labels, strict=True):
+        note_failed(ax, run.failed_checks, f" by {label}")
+    return ax
 
 
 def _force(run: Run, filter: FilterKind) -> tuple[Floats, Floats]:

@@ -26,6 +26,7 @@ from catenary_fe.views.style import (
     SUPPORT,
     finish,
     mark_supports,
+    note_failed,
 )
 
 Floats = NDArray[np.float64]
@@ -119,7 +120,7 @@ class _View:
         ax.set_xlim(self.start, self.end)
         ax.set_ylim(low, high + 0.35)
         width, height = _SIZE[0] * 0.9 / (self.end - self.start), _SIZE[1] * 0.5 / (high + 0.35 - low)
-        finish(ax, "", "height above rail (m)", self._title)
+        note_failed(finish(ax, "", "height above rail (m)", self._title), self._run.failed_checks)
         note = f"heights about {height / width:.0f}, motion another {self.magnified:g} times exaggerated"
         ax.text(0.995, 1.02, note, transform=ax.transAxes, ha="right", fontsize=8, color=SUPPORT)
         self._draw_force()

@@ -6,7 +6,15 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results import Run
-from catenary_fe.views.style import DROPPER, PANTOGRAPHS, finish, headroom, mark_supports, new_axes
+from catenary_fe.views.style import (
+    DROPPER,
+    PANTOGRAPHS,
+    finish,
+    headroom,
+    mark_supports,
+    new_axes,
+    note_failed,
+)
 
 
 def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -47,7 +55,9 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     )
     said = means or "evaluated spans not passed"
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: contact force ({said})"
-    return finish(ax, "position along the line (m)", "contact force (N)", title)
+    return note_failed(
+        finish(ax, "position along the line (m)", "contact force (N)", title), run.failed_checks
+    )
 
 
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -67,7 +77,7 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     headroom(ax, 0.08 + 0.1 * rows)
     ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: uplift at the supports"
-    return finish(ax, "time (s)", "uplift (mm)", title)
+    return note_failed(finish(ax, "time (s)", "uplift (mm)", title), run.failed_checks)
 
 
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -87,4 +97,6 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     ax.legend(loc="upper right", fontsize=8, ncols=2, framealpha=0.9)
     headroom(ax, 0.18)
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: dropper forces"
-    return finish(ax, "position along the line (m)", "dropper force (N)", title)
+    return note_failed(
+        finish(ax, "position along the line (m)", "dropper force (N)", title), run.failed_checks
+    )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from catenary_fe.results import Run
 from catenary_fe.system import InputError
 from catenary_fe.views.space_time import plot_space_time
+from catenary_fe.views.style import note_failed
 
 Floats = NDArray[np.float64]
 Quantity = Literal["velocity", "deflection"]
@@ -49,7 +50,7 @@ def plot_run_waves(
     rows = (history.time >= begin) & (history.time <= stop)
     values = (history.velocity if quantity == "velocity" else history.uplift)[rows][:, columns]
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: waves on the {wire}"
-    return plot_space_time(
+    drawn = plot_space_time(
         history.x[columns],
         history.time[rows],
         values,
@@ -60,6 +61,7 @@ def plot_run_waves(
         title=title,
         ax=ax,
     )
+    return note_failed(drawn, run.failed_checks)
 
 
 def _window(run: Run, spans: Sequence[int] | None) -> tuple[float, float, float, float]:

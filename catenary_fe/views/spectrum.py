@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.results import Run, spectrum
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes
+from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed
 
 
 def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | None = None) -> Axes:
@@ -42,7 +42,7 @@ def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | No
     ax.legend(loc="upper right", fontsize=8, framealpha=0.9)
     ax.set_xlim(0, up_to)
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: spectrum of the contact force"
-    return finish(ax, "frequency (Hz)", "amplitude (N)", title)
+    return note_failed(finish(ax, "frequency (Hz)", "amplitude (N)", title), run.failed_checks)
 
 
 def _distances(run: Run) -> dict[str, float]:

@@ -37,6 +37,14 @@ def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
     return ax
 
 
+def note_failed(ax: Axes, failed: Iterable[str], whose: str = "") -> Axes:
+    """Say under the title which checks the shown result fails, if any."""
+    if names := ", ".join(dict.fromkeys(failed)):
+        title = f"{ax.get_title(loc='left')}\nchecks failed{whose}: {names}"
+        ax.set_title(title, fontsize=10, loc="left")
+    return ax
+
+
 def mark_supports(ax: Axes, positions: Iterable[float], label: bool = True) -> None:
     """Thin vertical lines at the supports."""
     for i, x in enumerate(positions):

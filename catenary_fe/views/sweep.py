@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.system import target_mean_force
 from catenary_fe.system.current_collection import DEVIATION_SHARE
-from catenary_fe.views.style import finish, headroom, new_axes
+from catenary_fe.views.style import finish, headroom, new_axes, note_failed
 
 Rows = Sequence[Mapping[str, Any]]
 _COLOURS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3", "#8a6d1f", "#2a8f8f", "#a33b5e", "#5a5a5a")
@@ -39,7 +39,7 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
         means = [target_mean_force("EN 50367 AC", v / 3.6) for v in speeds]
         ax.plot(speeds, means, "--", **_CRITERION, label="largest mean force, EN 50367 AC")
     ax.axhline(0.0, **_CRITERION, linestyle=":", label="mean − 3σ must stay above 0")
-    return _finished(ax, x, "contact force, 0 to 20 Hz (N)", "Contact force")
+    return _finished(ax, rows, x, "contact force, 0 to 20 Hz (N)", "Contact force")
 
 
 def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
@@ -58,7 +58,7 @@ def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes
             label=f"{name}{DEVIATION_SHARE:g} of the mean, the most allowed",
         )
     ax.set_ylim(bottom=0.0)
-    return _finished(ax, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
+    return _finished(ax, rows, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
 
 
 def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
@@ -68,7 +68,7 @@ def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
         values = _column(curve, "max_support_uplift_mm")
         ax.plot(_column(curve, x), values, "o-", color=colour, markersize=4, label=f"{name}uplift")
     ax.set_ylim(bottom=0.0)
-    return _finished(ax, x, "largest uplift at a support (mm)", "Uplift")
+    return _finished(ax, rows, x, "largest uplift at a support (mm)", "Uplift")
 
 
 def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, list[Mapping[str, Any]]]]:
@@ -106,11 +106,14 @@ def _colours() -> list[str]:
     return list(_COLOURS) * 100
 
 
-def _finished(ax: Axes, x: str, y: str, what: str) -> Axes:
+def _finished(ax: Axes, rows: Rows, x: str, y: str, what: str) -> Axes:
     names = len(ax.get_legend_handles_labels()[1])
     if names <= 12:
         headroom(ax, 0.09 * (1 + (names + 2) // 3))
         ax.legend(loc="upper left", fontsize=8, ncols=3, framealpha=0.9)
     else:
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7)
-    return finish(ax, _title(x), y, f"{what} against {_title(x)}")
+    failing = [row for row in rows if row.get("checks_failed")]
+    checks = [name for row in failing for name in str(row["checks_failed"]).split("; ")]
+    finish(ax, _title(x), y, f"{what} against {_title(x)}")
+    return note_failed(ax, checks, f" in {len(failing)} of {len(rows)} rows")

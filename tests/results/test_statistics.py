@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from catenary_fe.results import band_pass, force_statistics, low_pass, spectrum
+from catenary_fe.results import ForceStatistics, band_pass, force_statistics, low_pass, spectrum
 
 STEP = 1e-3
 T = np.arange(0, 20, STEP)
@@ -78,3 +78,56 @@ def test_spectrum_finds_the_tone():
     frequency, amplitude = spectrum(100 + sine(7, 3.0), STEP)
     assert frequency[amplitude.argmax()] == pytest.approx(7, abs=0.06)
     assert amplitude.max() == pytest.approx(3, rel=0.01)
+
+
+def test_a_slow_cut_off_is_allowed_and_zero_is_not():
+    assert low_pass(sine(0.1), STEP, 0.5).max() == pytest.approx(1, rel=0.01)
+    with pytest.raises(ValueError, match="cut-off = 0 Hz"):
+        low_pass(T, STEP, 0.0)
+
+
+@pytest.mark.parametrize("kind", ["causal", "zero-phase"])
+def test_many_signals_are_filtered_as_each_alone(kind):
+    signals = np.array([[sine(3), 5 + sine(30)], [sine(11), np.exp(-T)], [T, 1 - T]])
+    together = low_pass(signals, STEP, kind=kind)
+    assert together.shape == signals.shape
+    for i in range(3):
+        for j in range(2):
+            assert together[i, j] == pytest.approx(low_pass(signals[i, j], STEP, kind=kind), abs=1e-12)
+
+
+@pytest.mark.parametrize(("kind", "gain"), [("causal", 1 / np.sqrt(2)), ("zero-phase", 0.5)])
+@pytest.mark.parametrize(("frequency", "slow", "quick", "all_"), [(5, 1, 1, None), (20, 0, 1, 1)])
+def test_bands_end_at_5_and_20_hz_with_the_filter_asked_for(kind, gain, frequency, slow, quick, all_):
+    """Each edge of a band lets this filter's share pass."""
+    s = force_statistics(
+        name="x", force=sine(frequency, np.sqrt(2)), height=T, inside=T > 10, step=STEP, filter=kind
+    )
+    assert s.std_0_5 == pytest.approx(slow * gain, abs=0.01)
+    assert s.std_5_20 == pytest.approx(quick * gain, rel=0.015)
+    if all_:
+        assert s.std == pytest.approx(gain, rel=0.015)
+    assert s.filter == kind
+
+
+def test_a_faint_force_is_no_loss_of_contact():
+    signal = np.where((T % 1) < 0.1, 0.0, 0.5)
+    s = force_statistics(name="x", force=signal, height=T, inside=T > 10, step=STEP)
+    assert s.contact_loss == pytest.approx(0.1, abs=1e-3)
+
+
+def test_numbers_by_name_in_display_units():
+    s = ForceStatistics(
+        pantograph="P", mean=120.0, std=30.0, std_0_5=10.0, std_5_20=20.0, statistical_max=210.0,
+        statistical_min=31.0, max=180.0, min=60.0, contact_loss=0.015, contact_point_range=0.0425,
+        filter="causal",
+    )  # fmt: skip
+    assert s.as_dict() == {
+        "name": "P", "mean_N": 120.0, "std_N": 30.0, "std_0_5_Hz_N": 10.0, "std_5_20_Hz_N": 20.0,
+        "statistical_max_N": 210.0, "statistical_min_N": 31.0, "max_N": 180.0, "min_N": 60.0,
+        "contact_loss_percent": pytest.approx(1.5), "contact_point_range_mm": pytest.approx(42.5),
+    }  # fmt: skip
+    assert str(s) == (
+        "P: mean 120.0 N, standard deviation 30.0 N, statistical maximum 210.0 N and minimum 31.0 N, actual"
+        " maximum 180.0 N and minimum 60.0 N, contact loss 1.50 %"
+    )

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
-BLOCK = 250  # steps between looks at progress
 PARTS = (1, 2, 4, 8, 16)  # of a step, where the run does not converge with the matrix at rest
 
 
@@ -44,10 +43,12 @@ class NonlinearCatenary:
         self, shape: Shape, time: TimeSettings | None = None, store_wire: float | None = None
     ) -> None:
         from catenary_fe.fe.nonlinear_model import nonlinear_model
+        from catenary_fe.fe.tension import TensionGauge
 
         self._shape, self._time = shape, time or TimeSettings()
         self._every = round(store_wire / self._time.step) if store_wire else 0
         self._scheme = make_scheme(self._time)
+        self._gauge = TensionGauge(shape.catenary, shape.mesh, shape.installation.lines)
         self._model = nonlinear_model(shape.catenary, shape.mesh, shape.installation)
         self._system = make_system(self._model)
         self._stations = make_stations(self._model, shape)
@@ -68,6 +69,7 @@ class NonlinearCatenary:
         the user interrupts.
         """
         from catenary_fe.fe.nonlinear_model import contact_start
+        from catenary_fe.fe.tension import INTERVAL, TensionRecord
 
         shape, h = self._shape, self._time.step
         begin = contact_start(shape.catenary, shape.mesh, shape.installation, pantographs, positions)
@@ -78,19 +80,23 @@ class NonlinearCatenary:
         records = self._records(sizes, total)
         load_heads(heads, records, 0, self._scheme, start, steps)
         state = State.at(start, total, self._system, heads, sizes)
+        tension, block = TensionRecord(self._gauge), max(1, round(INTERVAL / h))
+        tension.read(0.0, begin.wires)
         self.iterations = 0
         done = 0
         try:
             while done < steps:
-                count = min(BLOCK, steps - done)
+                count = min(block, steps - done)
                 self._advance(state, records, start, count)
                 done += count
+                if count == block:
+                    tension.read(h * done, state.motion.total - self._model.reference)
                 if progress:
                     progress(done / steps)
         except (SolverError, KeyboardInterrupt) as error:
             journey = read_journey(records, heads, 0, start, steps, h, shape)
-            raise Stopped(journey.until(done), error) from None
-        return read_journey(records, heads, 0, start, steps, h, shape)
+            raise Stopped(tension.joined(journey).until(done), error) from None
+        return tension.joined(read_journey(records, heads, 0, start, steps, h, shape))
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:
         stations = self._stations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from catenary_fe.results import Run
-from catenary_fe.results.comparison import QUANTITIES, Column, input_differences, key_figures
+from catenary_fe.results.comparison import QUANTITIES, Column, failed_checks, input_differences, key_figures
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 from catenary_fe.views.report.html import svg_address, template
@@ -20,6 +20,7 @@ def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: Filte
         "title": " and ".join(labels),
         "inputs": Table("", ("input", *labels), differences),
         "figures": figures_table(columns),
+        "warnings": failed_checks(runs, labels),
         "pictures": {
             "force": svg_address(plot_force_comparison(runs, labels, filter=filter)),
             "uplift": svg_address(plot_uplift_comparison(runs, labels)),
@@ -33,7 +34,7 @@ def figures_table(columns: Sequence[Column]) -> Table:
     rows = []
     for key, name in QUANTITIES.items():
         values = [column.values[key] for column in columns]
-        digits = 2 if key == "contact_loss_percent" else 0 if key == "slack_droppers" else 1
+        digits = {"contact_loss_percent": 2, "slack_droppers": 0, "checks_failed": 0}.get(key, 1)
         texts = [f"{value:.{digits}f}" for value in values]
         if len(values) == 2:
             texts.append(f"{round(values[1] - values[0], digits) + 0.0:+.{digits}f}")
