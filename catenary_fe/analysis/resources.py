@@ -79,9 +79,9 @@ def check_memory(found: Demand, what: str, workers: int = 1) -> None:
         at_once = f"{workers} processes of " if workers > 1 else ""
         fewer = ", fewer processes (--jobs)" if workers > 1 else ""
         raise InputError(
-            f"{what}: would take {at_once}{_in_gb(found.memory)} of memory, and {_in_gb(found.output)} on disk"
-            f" for each run; {_in_gb(free)} of memory are free: store the wires less often or not at all, take"
-            f" a larger time step{fewer} or fewer spans"
+            f"{what}: would take {at_once}{_in_gb(found.memory)} of memory, and {_in_gb(found.output)} on"
+            f" disk for each run; {_in_gb(free)} of memory are free: store wires less often or not at all,"
+            f" take a larger time step{fewer} or fewer spans"
         )
 
 

@@ -77,7 +77,7 @@ def test_what_has_no_room_is_refused_before_the_work(call, layout, tmp_path):
     assert last.startswith("error: run at 200 km/h: would take ")
     assert " of memory, and " in last
     assert last.endswith(
-        " memory are free: store the wires less often or not at all, take a larger time step or fewer spans"
+        " memory are free: store wires less often or not at all, take a larger time step or fewer spans"
     )
     assert not (tmp_path / "run").exists()
 
