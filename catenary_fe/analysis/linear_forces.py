@@ -171,6 +171,15 @@ def slacken(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int
 
 
 @compiled
+def swing_all(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int) -> float:
+    """Bring all links' forces to what they are on their circles; returns the largest change [N]."""
+    change = 0.0
+    for i in range(line.links.k.size):
+        change = max(change, swing(scheme, line, wires, work, c, i))
+    return change
+
+
+@compiled
 def swing(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int) -> float:
     """Bring a link's force from its tangent to what it is on its circle; returns the change [N]."""
     links, force = line.links, work.swing[c, i]
@@ -273,8 +282,8 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
     for a in range(work.active_count[c]):
         work.slack[c, work.active[c, a]] = 0.0
     links = line.links.k.size
-    for i in range(links):
-        work.swing[c, i, 0], work.swing[c, i, 1] = 0.0, 0.0
+    if links > 0:
+        work.swing[c, :, :] = 0.0
     free_heads(heads, c)
     while True:
         for _ in range(SWEEPS):
@@ -284,8 +293,8 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
                     change = max(change, push(scheme, wires, heads, work, c, j))
             for a in range(work.active_count[c]):
                 change = max(change, slacken(scheme, line, wires, work, c, work.active[c, a]))
-            for i in range(links):
-                change = max(change, swing(scheme, line, wires, work, c, i))
+            if links > 0:
+                change = max(change, swing_all(scheme, line, wires, work, c))
             if change <= TOLERANCE or contacts + work.active_count[c] + links == 1:
                 break
         if not find_slack(scheme, line, wires, work, to.droppers[c, :, heads.step[c] + 1], c):
