@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time as clock
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -52,16 +52,20 @@ class Checkpoint:
             )
         return arrays
 
-    def save_when_due(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def save_when_due(self, arrays: Callable[[], Mapping[str, NDArray[Any]]]) -> None:
         """Write arrays if the last ones are ``INTERVAL`` old.
 
         Raises InputError if the file cannot be written.
         """
         if clock.monotonic() - self._saved >= INTERVAL:
-            everything: dict[str, Any] = {_KEY: np.array(self._key), **self.carried, **arrays}
+            everything: dict[str, Any] = {_KEY: np.array(self._key), **self.carried, **arrays()}
             with written_aside(self._path) as aside, aside.open("wb") as file:
                 np.savez(file, **everything)
             self._saved = clock.monotonic()
+
+    def begin(self, carried: dict[str, NDArray[Any]]) -> None:
+        """Begin a run anew, with arrays to be kept along with its own."""
+        self.carried, self.kept = carried, None
 
     def remove(self) -> None:
         """The run is over."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.results import Run
 from catenary_fe.system import AnyPantograph, InputError, Pantograph, SolverError
 from catenary_fe.system.current_collection import MEAN_FORCE_TOLERANCE
@@ -35,8 +36,13 @@ class MeanForce:
         before = self._before or (self.uplifts, np.full_like(self.uplifts, np.nan))
         return {"uplifts": self.uplifts, "before": np.array(before), "runs": np.array(float(self._runs))}
 
-    def go_on(self, state: Mapping[str, Floats]) -> None:
-        """Go on from a :meth:`state`."""
+    def take_up(self, checkpoint: Checkpoint) -> None:
+        """Go on from what a checkpoint carries, and let it carry on."""
+        if checkpoint.kept:
+            self._go_on(checkpoint.kept)
+        checkpoint.carried = self.state()
+
+    def _go_on(self, state: Mapping[str, Floats]) -> None:
         self.uplifts, self._runs = state["uplifts"], int(state["runs"])
         uplifts, means = state["before"]
         self._before = None if np.isnan(means).any() else (uplifts, means)

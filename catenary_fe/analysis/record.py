@@ -149,6 +149,25 @@ def _unique(names: Sequence[str]) -> list[str]:
     return [f"{name} ({i})" for i, name in enumerate(names, start=1)]
 
 
+def run_key(
+    shape: Shape,
+    pantographs: Sequence[AnyPantograph],
+    speed: float,
+    time: TimeSettings,
+    start: Floats,
+    store_wire: float | None,
+) -> dict[str, Any]:
+    """All that decides a nonlinear run's result, and the versions that computed it."""
+    return {
+        "layout": hashlib.sha256(shape.catenary.model_dump_json().encode()).hexdigest(),
+        "pantographs": [p.model_dump(mode="json") for p in pantographs],
+        "speed": speed,
+        "positions": start.tolist(),
+        "settings": {"mesh": asdict(shape.mesh_settings), "time": asdict(time), "store_wire": store_wire},
+        "versions": {name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy", "numba")},
+    }
+
+
 def _provenance(
     shape: Shape, pantographs: Sequence[AnyPantograph], speed: float, time: TimeSettings, method: str
 ) -> dict[str, Any]:

@@ -7,18 +7,20 @@ import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.compiled import COMPILED
 from catenary_fe.analysis.linear_start import can_be_compiled
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
-from catenary_fe.analysis.record import make_run
+from catenary_fe.analysis.record import make_run, run_key
 from catenary_fe.analysis.resources import check_memory, demand
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
@@ -35,7 +37,7 @@ Method = Literal["nonlinear", "linearised", "exudyn"]
 ENERGY_INTERVAL = 0.05  # [s] between readings of the energy
 
 Pairs = Sequence[tuple[AnyPantograph, float]]
-Drive = Callable[[Pairs, float, Floats, int, Progress | None], "Journey"]
+Drive = Callable[[Pairs, float, Floats, int, Progress | None, Checkpoint | None], "Journey"]
 
 _log = logging.getLogger(__name__)
 
@@ -63,6 +65,7 @@ def simulate(
     progress: Progress | None = None,
     method: Method = "nonlinear",
     energy: bool = False,
+    checkpoint: str | Path | None = None,
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
@@ -81,11 +84,13 @@ def simulate(
         are not there. It warns where they matter.
     energy : record energy, work and losses of the whole system, which a check then judges; with the method
         "exudyn" only, a quarter slower
+    checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
+        again, the same run goes on from it, with the same result. It is removed at the end
 
-    Raises InputError for a speed in the wrong unit, energies of another method, a run that would end beyond
-    the line or take more memory than there is, a pantograph that the air pushes down or a contact wire that
-    leaves the head sideways, SolverError where a solve fails or the mean force is not reached, Interrupted
-    after Ctrl-C; both have the run until then as ``partial``.
+    Raises InputError for a speed in the wrong unit, energies or a checkpoint of another method, a checkpoint
+    of another run, a run that would end beyond the line or take more memory than there is, a pantograph that
+    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
+    the mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
     """
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
@@ -107,6 +112,11 @@ def simulate(
     for warning in warnings:
         _log.warning(warning)
     force = MeanForce(pantographs, speed)
+    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
+    if checkpoint is not None and not compiled:
+        raise InputError(
+            f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
+        )
     if method == "linearised":
         case = Case(pantographs, speed, plan.start, plan.distance, warnings)
         (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
@@ -116,18 +126,24 @@ def simulate(
             _log.warning(warning)
         return result
     begin = clock.perf_counter()
-    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
     drive = _compiled(shape, time, store_wire) if compiled else _by_exudyn(shape, time, store_wire, energy)
     steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
+    keeper = None
+    if checkpoint is not None:
+        keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
+        force.take_up(keeper)
     while True:
         pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
         label = partial(
             make_run, shape, pantographs, force.uplifts, speed, time, warnings=warnings, method=method
         )
         with kept_when_stopped(label, steps * time.step):
-            run = label(drive(pairs, speed, plan.start, steps, progress))
+            run = label(drive(pairs, speed, plan.start, steps, progress, keeper))
         run = Run(run.data, clock.perf_counter() - begin)
-        if force.reached(run):
+        reached = force.reached(run)
+        if keeper:
+            keeper.remove() if reached else keeper.begin(force.state())
+        if reached:
             return run
         begin = clock.perf_counter()
 
@@ -144,8 +160,14 @@ def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energ
     every = max(ENERGY_INTERVAL, time.step) if energy else None
 
     def drive_it(
-        pantographs: Pairs, speed: float, positions: Floats, steps: int, progress: Progress | None
+        pantographs: Pairs,
+        speed: float,
+        positions: Floats,
+        steps: int,
+        progress: Progress | None,
+        checkpoint: Checkpoint | None,
     ) -> Journey:
+        assert checkpoint is None
         trip = Trip(speed, positions, steps, time, wire_interval=store_wire, energy_interval=every)
         return drive(shape.catenary, shape.mesh, shape.installation, pantographs, trip, progress)
 

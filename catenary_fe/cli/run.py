@@ -80,6 +80,11 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     show_default=True,
     help="Linearised: about the static state, many times faster.",
 )
+@click.option(
+    "--checkpoint",
+    type=click.Path(dir_okay=False),
+    help="File that keeps the state of a nonlinear run: started again after a kill, the run goes on from it.",
+)
 @click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
 @click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
 @click.option(
@@ -117,6 +122,7 @@ def run(
     positions: tuple[float, ...],
     speed_kmh: float,
     method: Any,
+    checkpoint: str | None,
     time_step_ms: float,
     element_m: float | None,
     filter_kind: Any,
@@ -159,6 +165,7 @@ def run(
                 progress=progress,
                 method=method,
                 energy=energy,
+                checkpoint=checkpoint,
             )
         summary = result.summary(filter=filter_kind)
         rows = judged(shape, result, system, filter_kind, quiet) if system else []

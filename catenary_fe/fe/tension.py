@@ -92,6 +92,10 @@ class TensionRecord:
         self._times.append(time)
         self._changes.append(self._gauge.largest_change(now, self._first))
 
+    def go_on(self, times: Floats, changes: Floats) -> None:
+        """Take up readings made before, the first one excepted, which is read again."""
+        self._times, self._changes = times.tolist(), list(changes.T)
+
     def joined(self, journey: Journey) -> Journey:
         """The journey with what was read."""
         return replace(journey, tension_change=self.changes, tension_times=self.times)

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.analysis.linear_arrays import Records, Scheme, Wires
 from catenary_fe.analysis.linear_records import Sizes, load_heads, make_heads, make_records, read_journey
 from catenary_fe.analysis.linear_setup import make_scheme
 from catenary_fe.analysis.linear_start import Chain, Start, chain_of
 from catenary_fe.analysis.nonlinear.arrays import Factor
+from catenary_fe.analysis.nonlinear.course import Course
 from catenary_fe.analysis.nonlinear.setup import make_factor, make_stations, make_system
 from catenary_fe.analysis.nonlinear.state import State
 from catenary_fe.analysis.nonlinear.steps import advance
@@ -62,8 +64,11 @@ class NonlinearCatenary:
         positions: Floats,
         steps: int,
         progress: Progress | None = None,
+        checkpoint: Checkpoint | None = None,
     ) -> Journey:
         """Run pantographs, each with its uplift [N], from static contact at constant speed [m/s].
+
+        checkpoint : keeps the run's state now and then; the run goes on from what was found in it
 
         Raises Stopped with the journey until then where steps do not converge, not even much shorter ones, or
         the user interrupts.
@@ -82,8 +87,8 @@ class NonlinearCatenary:
         state = State.at(start, total, self._system, heads, sizes)
         tension, block = TensionRecord(self._gauge), max(1, round(INTERVAL / h))
         tension.read(0.0, begin.wires)
-        self.iterations = 0
-        done = 0
+        course, self.iterations = Course(state, records, tension), 0
+        done = course.go_on(checkpoint.kept) if checkpoint and checkpoint.kept else 0
         try:
             while done < steps:
                 count = min(block, steps - done)
@@ -93,6 +98,8 @@ class NonlinearCatenary:
                     tension.read(h * done, state.motion.total - self._model.reference)
                 if progress:
                     progress(done / steps)
+                if checkpoint:
+                    checkpoint.save_when_due(course.arrays)
         except (SolverError, KeyboardInterrupt) as error:
             journey = read_journey(records, heads, 0, start, steps, h, shape)
             raise Stopped(tension.joined(journey).until(done), error) from None

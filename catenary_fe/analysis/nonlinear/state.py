@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,16 @@ class State:
         """Go back to a copy."""
         for array, values in zip(self.kept, snapshot, strict=True):
             array[:] = values
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """All that the next steps depend on to the last bit, by name."""
+        named = {f"state_{i}": array for i, array in enumerate(self.kept)}
+        return named | {f"slack_{name}": array for name, array in self.slack._asdict().items()}
+
+    def go_on(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from :meth:`arrays`."""
+        for name, array in self.arrays().items():
+            array[...] = arrays[name]
 
     def rescale(self, old: Scheme, new: Scheme, chains: Sequence[Chain]) -> None:
         """Take another time step from here on: the same state in the terms of another scheme."""
