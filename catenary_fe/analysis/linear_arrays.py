@@ -93,6 +93,14 @@ class Links(NamedTuple):
     yielding: Columns
 
 
+class Bowed(NamedTuple):
+    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.linear_model.Bows`."""
+
+    at: Integers
+    length: Floats
+    gap: Integers
+
+
 class Line(NamedTuple):
     """Contact wires, one after the other, and droppers.
 
@@ -103,7 +111,7 @@ class Line(NamedTuple):
     give : columns of the inverse for these coordinates, numbered by ``column``
     rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
     yielding : columns of the inverse for the droppers
-    links : steady arms
+    links, bows : steady arms, inclined elements
     supports, heights, tensions, rest : coordinates of heights at supports and of all nodes, of tensions, and
         the tensions at rest
     """
@@ -122,6 +130,7 @@ class Line(NamedTuple):
     tension: Floats
     yielding: Columns
     links: Links
+    bows: Bowed
     supports: Integers
     heights: Integers
     tensions: Integers
@@ -206,6 +215,7 @@ class Work(NamedTuple):
     force : [N], shape (lanes, contacts)
     slack : [N], shape (lanes, droppers), what is taken off a dropper that is not as a taut one
     swing : [N], shape (lanes, links, 2), what a link's force has more than its tangent
+    tension : [N], shape (lanes, gaps), change of tension at the end of the step before
     active : shape (lanes, droppers), numbers of those droppers, the first ``active_count`` of the lane
     column, first, width : shape (lanes, contacts, room) and (lanes, contacts), how the wires give there,
         from which row on, in how many
@@ -217,6 +227,7 @@ class Work(NamedTuple):
     force: Floats
     slack: Floats
     swing: Floats
+    tension: Floats
     active: Integers
     active_count: Integers
     column: Floats

@@ -364,7 +364,8 @@ def record(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, t
     share = 0.0
     for s in range(line.tensions.size):
         i = line.tensions[s]
-        share = max(share, abs(wires.q[i, c] + scheme.b * wires.x[i, c]) / line.rest[s])
+        work.tension[c, s] = wires.q[i, c] + scheme.b * wires.x[i, c]
+        share = max(share, abs(work.tension[c, s]) / line.rest[s])
     to.share[c, n] = share
     if to.every > 0 and n % to.every == 0:
         for node in range(line.heights.size):

@@ -22,6 +22,8 @@ from catenary_fe.analysis.linear_arrays import (
 from catenary_fe.analysis.linear_forces import advance_heads, meet, record
 from catenary_fe.analysis.linear_kernel import (
     advance,
+    bow_eight,
+    bow_one,
     lower_eight,
     lower_one,
     predict,
@@ -58,6 +60,7 @@ class Lanes:
             force=np.zeros((lanes, j)),
             slack=np.zeros((lanes, line.k.size)),
             swing=np.zeros((lanes, line.links.k.size, 2)),
+            tension=np.zeros((lanes, line.tensions.size)),
             active=np.zeros((lanes, line.k.size), dtype=np.int64),
             active_count=np.zeros(lanes, dtype=np.int64),
             column=np.zeros((lanes, j, width)),
@@ -78,6 +81,7 @@ class Lanes:
         for array, values in zip(self.wires, (start.q, zero, zero, zero, start.q), strict=True):
             array[:, lane] = values
         self.work.active_count[lane] = 0
+        self.work.tension[lane] = start.q[self._setup.line.tensions]
         load_heads(self.heads, self.records, lane, self._setup.scheme, start, steps)
         supports, heights = self._setup.line.supports, self._setup.model.heights
         self.records.supports[lane, supports >= 0, 0] = start.q[supports[supports >= 0]]
@@ -140,6 +144,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             flat.x[:] = 0.0
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
+            bow_one(line, flat.q, work.tension[0], flat.x)
             lower_one(operator.lower, flat.x, 0, groups)
             upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
             _finish(scheme, line, wires, heads, work, records)
@@ -162,6 +167,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             flat.x[:] = 0.0
             take_eight(operator.stiffness, wires.w, wires.x)
             take_eight(operator.rest, wires.v, wires.x)
+            bow_eight(line, wires.q, work.tension, wires.x)
             lower_eight(operator.lower, wires.x)
             upper_eight(operator.upper, operator.inverse, wires.x)
             _finish(scheme, line, wires, heads, work, records)
@@ -182,8 +188,10 @@ def _advance_plainly(
     for _ in range(steps):
         if (heads.step >= heads.last).all():
             return
-        right = model.stiffness @ wires.q + model.damping @ wires.v
-        wires.x[:] = setup.factor.solve(-right)
+        wires.x[:] = -(model.stiffness @ wires.q + model.damping @ wires.v)
+        for lane in range(wires.x.shape[1]):
+            bow_one(setup.line, wires.q[:, lane], work.tension[lane], wires.x[:, lane])
+        wires.x[:] = setup.factor.solve(wires.x)
         _finish(scheme, setup.line, wires, heads, work, records)
         state = advance(scheme, wires.q, wires.v, wires.c, wires.x)
         for array, values in zip(wires, state, strict=False):

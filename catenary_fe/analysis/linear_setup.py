@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Columns, Line, Links, Operator, Quads, Rows, Scheme
+from catenary_fe.analysis.linear_arrays import Bowed, Columns, Line, Links, Operator, Quads, Rows, Scheme
 from catenary_fe.fe.linear_model import HELD, LinearModel
 from catenary_fe.fe.solver_settings import TimeSettings
 
@@ -193,6 +193,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         tension=model.dropper_tension,
         yielding=_columns(factor, model.dropper_rows.T.tocsc()),
         links=_links(model, factor),
+        bows=Bowed(model.bows.index, model.bows.length, model.bows.gap),
         supports=np.concatenate([wire.supports for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,

@@ -6,6 +6,9 @@ wire is a spring whose tension is a coordinate of its own, and the matrices stay
 
     K_b q + G t = f      G_e the change of a gap's length with the coordinates q
     Gᵀ q − t / k = 0     t its tension, k its stiffness
+
+Two terms of second order are kept beside the matrices, since a tension that changes by a per cent changes how
+the wire moves by as much: inclinations lengthen a gap, and its change of tension works on inclined elements.
 """
 
 from __future__ import annotations
@@ -75,6 +78,20 @@ class SwingingLinks:
 
 
 @dataclass(frozen=True)
+class Bows:
+    """Elements seen along one axis across the track, of which each has one or two.
+
+    index : shape (bows, 4), numbers of place and slope at the first node, then at the second, or HELD
+    length : [m], shape (bows,)
+    gap : shape (bows,), number of the element's gap in ``tensions``
+    """
+
+    index: Integers
+    length: Floats
+    gap: Integers
+
+
+@dataclass(frozen=True)
 class LinearModel:
     """M q̈ + D q̇ + K q = f with all droppers taut; coordinates in the order of their stations.
 
@@ -86,6 +103,7 @@ class LinearModel:
     heights : shape (nodes of all wires,), numbers of the coordinates up, or HELD
     tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
     links : steady arms that swing
+    bows : elements whose inclination lengthens a gap
     rest_tension : [N], shape (gaps,), nominal tension of their wires
     in_space : whether it has coordinates to the side
     """
@@ -102,6 +120,7 @@ class LinearModel:
     tensions: Integers
     rest_tension: Floats
     links: SwingingLinks
+    bows: Bows
     in_space: bool
 
     @property
@@ -153,8 +172,21 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
         tensions=place[whole:],
         rest_tension=np.concatenate([w.tension for w in wires]),
         links=swinging,
+        bows=_bows(model, wires, place),
         in_space=model.axes == 3,
     )
+
+
+def _bows(model: Model, wires: list[_ReducedWire], place: Integers) -> Bows:
+    across = model.axes - 1
+    index, length, gap, first = [], [], [], 0
+    for wire, items in zip(wires, model.wires, strict=True):
+        for axis in range(across):
+            index.append(place[wire.across[:, axis::across]])
+            length.append(items.line.lengths)
+            gap.append(first + wire.gap_of)
+        first += wire.gap_stiffness.size
+    return Bows(np.concatenate(index), np.concatenate(length), np.concatenate(gap))
 
 
 def _swinging_links(model: Model, place: Integers) -> SwingingLinks:

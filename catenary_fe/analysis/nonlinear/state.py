@@ -95,6 +95,7 @@ def _work(sizes: Sizes) -> Work:
         force=np.zeros((1, j)),
         slack=np.zeros((1, 0)),
         swing=np.zeros((1, 0, 2)),
+        tension=np.zeros((1, 0)),
         active=np.zeros((1, 0), dtype=np.int64),
         active_count=np.zeros(1, dtype=np.int64),
         column=np.zeros((1, j, ROOM)),
