@@ -32,11 +32,12 @@ def test_statistics_agree_with_the_nonlinear_run(linearised, short_run):
     assert filtered_difference(linearised, short_run) < 0.03 * theirs.std
     assert linearised.method == "linearised"
     # the line is short for both; the linearised run has no doubts of its own
-    assert [w.split(" = ")[0] for w in linearised.warnings] == ["check failed: end reflection"]
+    assert not linearised.warnings
 
 
 def test_histories_agree_with_the_nonlinear_run(linearised, short_run):
-    assert set(linearised.data.variables) == set(short_run.data.variables)
+    of_tension = {"tension_time", "tension_change", "wire"}
+    assert set(linearised.data.variables) == set(short_run.data.variables) - of_tension
     for name, close in (
         ("contact_force", 5.0), ("mass_height", 5e-4), ("wire_height", 5e-4), ("support_uplift", 5e-4),
         ("contact_wire_height", 1e-3),
