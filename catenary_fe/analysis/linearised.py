@@ -1,7 +1,8 @@
 """Linearised runs: the same model about its static state, with what is truly nonlinear kept.
 
-Contact that never pulls and droppers that go slack are solved in each step; large motions, and tension that
-changes with them, are not there. Runs on one catenary share one factorisation and advance side by side.
+Contact that never pulls, droppers that go slack and arms that swing are solved in each step, and tension
+changes with the wires' inclination; other large motions are not there. Runs on one catenary share one
+factorisation and advance side by side.
 """
 
 from __future__ import annotations
