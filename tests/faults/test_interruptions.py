@@ -26,7 +26,10 @@ SWEEP = [
 ]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow)],
+)
 def test_a_sweep_that_is_stopped_goes_on(call, start, layout, tmp_path, number, code):
     words = ["sweep", layout, *SWEEP, "-o", tmp_path, "--speed-kmh"]
     process = start(*words, "150:300:10")
@@ -58,6 +61,7 @@ def workers(process) -> list[int]:
     return [int(pid) for pid, arguments in lines if "popen_loky" in arguments]
 
 
+@pytest.mark.slow
 def test_a_killed_worker_costs_no_case(start, layout, tmp_path):
     process = start("sweep", layout, *SWEEP, "--speed-kmh", "240:300:20", "-o", tmp_path)
     wait_until(lambda: list(tmp_path.glob("cases/[!.]*.json")), process)

@@ -170,6 +170,7 @@ def test_a_run_that_fails_is_kept_as_partial(call, layout, tmp_path):
     assert not (folder / "partial").exists()
 
 
+@pytest.mark.slow
 def test_smaller_steps_carry_a_run_over_a_hard_place(layout):
     """Droppers of 1 MN/m fail at steps of 8 ms, and not at half of it."""
     catenary = cf.load_catenary(layout)
@@ -191,7 +192,10 @@ def test_smaller_steps_carry_a_run_over_a_hard_place(layout):
     assert np.isfinite(coarse.data["contact_force"]).all()
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [pytest.param(signal.SIGINT, 130, marks=pytest.mark.slow), (signal.SIGTERM, 143)],
+)
 def test_a_run_that_is_stopped_by_a_signal(start, layout, finished, tmp_path, number, code):
     folder = tmp_path / "run"
     folder.mkdir()
