@@ -50,8 +50,12 @@ def names_of(tree):
             yield "call", node.func.id
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             yield "attribute", node.func.attr
-        elif isinstance(node, ast.keyword) and node.arg == "allow_pickle":
+        elif isinstance(node, ast.keyword) and node.arg == "allow_pickle" and not is_false(node.value):
             yield "call", "allow_pickle"
+
+
+def is_false(node):
+    return isinstance(node, ast.Constant) and node.value is False
 
 
 def dangers(source):

@@ -109,7 +109,7 @@ def test_a_compiled_run_keeps_its_finished_blocks(shape, pantograph):
     whole = cf.simulate(shape, [pantograph], speed=200 / 3.6, time=time, store_wire=0.02)
     early = interrupted(shape, [pantograph], 0.5, method="nonlinear", time=time, store_wire=0.02).partial
     n = early.time.size
-    assert n % 250 == 1
+    assert n > 50 and n % 25 == 1  # blocks of 50 ms
     assert not early.reached
     assert np.array_equal(early.data["contact_force"].values, whole.data["contact_force"].values[:, :n])
     shapes = early.data.sizes["wire_time"]

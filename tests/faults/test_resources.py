@@ -11,10 +11,12 @@ import catenary_fe as cf
 from catenary_fe.analysis import resources
 
 SCRIPT = """
-import resource, sys
+import pathlib, sys
 from catenary_fe.cli.main import main
 code = main(sys.argv[1:])
-print(code, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+# not of getrusage, which counts what the process was forked from
+peak = pathlib.Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]
+print(code, 1024 * int(peak))
 """
 
 
@@ -61,7 +63,9 @@ def test_the_prediction_is_near_what_is_taken(layout, tmp_path, options):
     code, peak = map(float, done.stdout.split())
     assert code == 0
     demand = predicted(layout, options)
-    assert (tmp_path / "run" / "run.nc").stat().st_size == pytest.approx(demand.output + 20e3, abs=15e3)
+    assert (tmp_path / "run" / "run.nc").stat().st_size == pytest.approx(
+        demand.output + 20e3, abs=15e3, rel=0.01
+    )
     assert 0.8 * peak < demand.memory < 1.5 * peak
 
 
