@@ -56,6 +56,7 @@ class NonlinearCatenary:
         self._stations = make_stations(self._model, shape)
         self._factor = make_factor(self._model, self._scheme, self._model.start)
         self.iterations = 0
+        self._notes: list[str] = []
 
     def drive(
         self,
@@ -87,8 +88,10 @@ class NonlinearCatenary:
         state = State.at(start, total, self._system, heads, sizes)
         tension, block = TensionRecord(self._gauge), max(1, round(INTERVAL / h))
         tension.read(0.0, begin.wires)
-        course, self.iterations = Course(state, records, tension), 0
-        done = course.go_on(checkpoint.kept) if checkpoint and checkpoint.kept else 0
+        course, self.iterations, self._notes = Course(state, records, tension), 0, []
+        done = 0
+        if checkpoint and checkpoint.kept:
+            done, self._notes = course.go_on(checkpoint.kept), checkpoint.kept["notes"].tolist()
         try:
             while done < steps:
                 count = min(block, steps - done)
@@ -99,11 +102,12 @@ class NonlinearCatenary:
                 if progress:
                     progress(done / steps)
                 if checkpoint:
-                    checkpoint.save_when_due(course.arrays)
+                    checkpoint.save_when_due(lambda: course.arrays() | {"notes": np.array(self._notes)})
         except (SolverError, KeyboardInterrupt) as error:
             journey = read_journey(records, heads, 0, start, steps, h, shape)
             raise Stopped(tension.joined(journey).until(done), error) from None
-        return tension.joined(read_journey(records, heads, 0, start, steps, h, shape))
+        journey = tension.joined(read_journey(records, heads, 0, start, steps, h, shape))
+        return replace(journey, notes=tuple(self._notes))
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:
         stations = self._stations
@@ -127,8 +131,17 @@ class NonlinearCatenary:
             done = self._take(state, records, steps, parts, scheme, factor)
             state.rescale(scheme, self._scheme, start.chains)
             if done:
+                self._note(parts, steps, self._time.step * (int(state.heads.step[0]) - steps))
                 return
         raise SolverError(self._failure(state, start))
+
+    def _note(self, parts: int, steps: int, begin: float) -> None:
+        """Remember for the result that steps were divided."""
+        if parts > 1:
+            self._notes.append(
+                f"no convergence with the time step after {begin:.4f} s: on from there in steps of 1/{parts}"
+                f" of it for {1e3 * steps * self._time.step:g} ms"
+            )
 
     def _take(
         self, state: State, records: Records, steps: int, parts: int, scheme: Scheme, factor: Factor
