@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from catenary_fe.system.catenary_rules import catenary_faults
+from catenary_fe.system.errors import InputError
 from catenary_fe.system.parameters import (
     GRAVITY,
     NonEmpty,
@@ -216,6 +217,8 @@ class Catenary(Parameters):
         """The same line in the vertical plane: no stagger, no curves, links as springs.
 
         A link under the sideways pull H acts in the plane like a vertical spring of H over its length.
+
+        Raises InputError for a link so short, or pulled so hard, that no spring can stand for it.
         """
         if not self.is_spatial:
             return self
@@ -225,9 +228,9 @@ class Catenary(Parameters):
                 messenger_stagger=0.0,
                 messenger_lateral_stiffness=None,
                 messenger_lateral_damping=0.0,
-                steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull))),
+                steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
             )
-            for s, pull in zip(self.supports, self.lateral_pulls, strict=True)
+            for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
         )
         spans = tuple(span.replace(curve_radius=None) for span in self.spans)
         return self.replace(spans=spans, supports=supports, spatial=False)
@@ -262,13 +265,17 @@ class Catenary(Parameters):
         )
 
 
-def _arm_in_the_plane(arm: SteadyArm, pull: float) -> SteadyArm:
+def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:
     if arm.length is None:
         return arm
     force = pull * tan(arm.inclination or 0.0) - GRAVITY * (arm.hanging_mass - arm.tip_mass)
-    return SteadyArm(
-        stiffness=pull / arm.length,
-        mass=arm.tip_mass,
-        holds_design_height=arm.holds_height,
-        preload=0.0 if arm.holds_height else force,
-    )
+    try:
+        return SteadyArm(
+            stiffness=pull / arm.length,
+            mass=arm.tip_mass,
+            holds_design_height=arm.holds_height,
+            preload=0.0 if arm.holds_height else force,
+        )
+    except InputError as error:
+        where = f"support {support}: the steady arm as a vertical spring of pull over length"
+        raise InputError(*(f"{where}: {line}" for line in error.problems)) from None

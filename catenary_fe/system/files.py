@@ -18,6 +18,7 @@ from catenary_fe.system.parameters import (
     Number,
     Parameters,
     Positive,
+    Sideways,
     Text,
     problem_lines,
     shorten,
@@ -126,7 +127,7 @@ class LayoutFile(Parameters):
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWireEntry | None = None
     """at each support between the line's ends; unset: none"""
-    stagger: Number = 0.0
+    stagger: Sideways = 0.0
     """[m] of the contact wire at the supports, to the left at the first and then to alternating sides; a
     support that differs may say so"""
     curve_radius: Number | None = None

@@ -26,6 +26,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, l
 Positive = Annotated[
     float, Field(strict=True, allow_inf_nan=False, gt=0, le=LARGEST), AfterValidator(_not_tiny)
 ]
+Sideways = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-10, le=10)]  # [m]; refuses mm
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Text = Annotated[str, Field(strict=True)]
 

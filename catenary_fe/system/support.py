@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from catenary_fe.system.parameters import NonNegative, Number, Parameters, Positive
+from catenary_fe.system.parameters import NonNegative, Number, Parameters, Positive, Sideways
 
 Angle = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, lt=pi / 3)]
 Side = Literal["left", "right"]
@@ -102,9 +102,9 @@ class Support(Parameters):
     """registration of the contact wire; unset: the contact wire is free here"""
     system_height: Positive | None = None
     """[m] between the wires at this support; unset: the catenary's"""
-    stagger: Number = 0.0
+    stagger: Sideways = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Number = 0.0
+    messenger_stagger: Sideways = 0.0
     """[m] of the messenger wire to the left of the track's centre (+y)"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""

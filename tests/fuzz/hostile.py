@@ -78,7 +78,7 @@ def edited(record: dict[str, Any], edit: tuple[Any, ...]) -> dict[str, Any]:
     if how == "drop":
         del owner[last]
     elif how == "scale" and isinstance(old, int | float) and not isinstance(old, bool):
-        owner[last] = old * factor
+        owner[last] = old * factor if abs(old) < 1e300 else -old  # beyond floats: a whole number
     elif how == "twice" and isinstance(owner, list):
         owner.insert(last, copy.deepcopy(old))
     elif how == "add" and isinstance(owner, dict):

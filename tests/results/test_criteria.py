@@ -82,7 +82,7 @@ def test_a_run_set_for_the_largest_mean_force_keeps_it(short_run, pantograph):
         assert verdicts(altered(short_run, limit + excess, pantographs=is_set), "mean force")[1] is expected
     assert verdicts(altered(short_run, limit + 0.09), "mean force")[1] is False  # uplift given: no tolerance
     row = criteria_rows(altered(short_run, limit + 0.04, pantographs=is_set), "AC")[1]
-    assert (row.value_text, row.limit_text) == ("130.7 N", "at most 130.6 N (± 0.1)")
+    assert (row.value_text, row.limit_text, row.verdict) == ("130.7 N", "at most 130.6 N (± 0.1)", "passed")
 
 
 @pytest.mark.parametrize(("share", "expected"), [(0.2999, True), (0.3001, False)])
@@ -122,6 +122,15 @@ def test_one_instant_without_contact_is_a_loss(short_run):
     inside[window[100]] = 0.0
     assert verdicts(altered(short_run, outside), "contact loss") == [True]
     assert verdicts(altered(short_run, inside), "contact loss") == [False]
+    row = next(r for r in criteria_rows(altered(short_run, inside), "AC") if r.name == "contact loss")
+    assert row.value == pytest.approx(100 / window.size)  # one of the window's instants, in %
+
+
+def test_the_filter_is_the_one_asked_for(short_run):
+    for kind in ("causal", "zero-phase"):
+        rows = criteria_rows(short_run, "AC", filter=kind)
+        deviation = next(r.value for r in rows if r.name == "standard deviation")
+        assert deviation == short_run.contact_force_statistics(filter=kind)[0].std
 
 
 def with_rooms(catenary, rooms):
@@ -151,6 +160,7 @@ def test_supports_without_a_known_room_are_not_judged(short_run, short):
     run = altered(short_run, CALM, uplift=lift, catenary=with_rooms(short, [None, None, None, 0.11, None]))
     known, unknown = (r for r in criteria_rows(run, "AC") if r.name == "twice the uplift at steady arms")
     assert (known.passed, unknown.passed) == (True, None)
+    assert (known.recalled, unknown.recalled) == (True, False)
     assert unknown.value == pytest.approx(120)
     assert "no uplift_room given, support 3" in unknown.source
     bare = short.replace(supports=tuple(s.replace(steady_arm=None) for s in short.supports))
@@ -201,6 +211,9 @@ def test_recalled_limits_are_marked(short_run):
 def test_on_the_limit(relation, on_the_limit):
     row = cf.Criterion(name="x", value=1.0, relation=relation, limit=1.0, unit="N", source="")
     assert row.passed is on_the_limit
+    beside = -0.02 if relation == "at most" else 0.02
+    assert replace(row, limit=1.0 + beside, tolerance=0.021).passed is True
+    assert replace(row, limit=1.0 + beside, tolerance=0.019).passed is False
     assert replace(row, limit=None).passed is None
 
 

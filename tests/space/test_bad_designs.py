@@ -58,6 +58,20 @@ def test_sharp_curves_and_planes_that_are_none(staggered):
     assert not staggered.planar().is_spatial
 
 
+def test_millimetres_of_stagger_stand_out(reference):
+    for name in ("stagger", "messenger_stagger"):
+        with pytest.raises(cf.InputError, match=rf"{name} = 200\.0: must be at most 10; it is \[m\]"):
+            reference.supports[1].replace(**{name: 200.0})
+
+
+def test_a_link_that_no_spring_stands_for_is_named(reference):
+    arm = cf.SteadyArm(length=1e-13, mass_per_length=1.0)
+    support = cf.Support(messenger_stiffness=5e5, steady_arm=arm)
+    sides = tuple(support.replace(stagger=0.2 * (-1) ** i) for i in range(11))
+    with pytest.raises(cf.InputError, match="support 2: the steady arm as a vertical spring of pull over"):
+        reference.replace(supports=sides).planar()
+
+
 def test_a_file_with_stagger_and_a_support_that_differs(tmp_path, reference_layout):
     text = (reference_layout.parent / "en50318_2018_ac_simple.toml").read_text()
     path = tmp_path / "line.toml"
