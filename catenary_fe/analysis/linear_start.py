@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.analysis.compiled import plain
+from catenary_fe.analysis.linear_arrays import Line
+from catenary_fe.analysis.linear_kernel import bowed as bow
 from catenary_fe.analysis.linear_setup import Setup
 from catenary_fe.fe.linear_model import ContactLine
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, SolverError
 
 Floats = NDArray[np.float64]
 _CHANGES = 50  # of what is slack or off the wire
+_SETTLED = 1e-9  # of the largest coordinate, by which terms of second order may still move others
 
 
 class Track(Protocol):
@@ -93,14 +97,33 @@ def static_contact(
     problem = _Contact(setup, chains)
     slack: list[int] = []
     off: list[int] = []
+    bowed = np.zeros(setup.model.size)
     for _ in range(_CHANGES):
-        heads, forces, q, spring = problem.solve(slack, off)
+        heads, forces, q, spring = problem.solve(slack, off, bowed)
         now = np.flatnonzero(spring <= 0).tolist()
         now_off = [j for j, force in enumerate(forces) if force < 0 or j in off]
-        if now == slack and now_off == off:
+        before, bowed = bowed, setup.static.solve(bow_forces(setup.line, q))
+        if now == slack and now_off == off and np.abs(bowed - before).max() <= _SETTLED * np.abs(q).max():
             return Start(q, problem.started(heads, forces, q), np.maximum(spring, 0.0), speed)
         slack, off = now, now_off
     raise SolverError("static contact at the start: no consistent set of slack droppers found")
+
+
+def bow_forces(line: Line, q: Floats) -> Floats:
+    """The terms of second order that steps have too, as a right side of K q = f: shape (size,).
+
+    q : [m], and [N] where tensions are, shape (size,)
+    """
+    load = np.zeros_like(q)
+    at, tension = line.bows.at, line.tensions[line.bows.gap]
+    y, s, z, e = (np.where(i >= 0, q[i], 0.0) for i in at.T)
+    arrays: Any = (line.bows.length, y, s, z, e)
+    across, first, last, longer = plain(bow)(*arrays)
+    for place, force in zip(at.T, (-across, -first, across, -last), strict=True):
+        free = place >= 0
+        np.add.at(load, place[free], (q[tension] * force)[free])
+    np.subtract.at(load, tension, longer)
+    return load
 
 
 class _Contact:
@@ -118,11 +141,12 @@ class _Contact:
         self._lateral = [lateral for _, _, lateral in placed]
         self._lifts = setup.static.solve(np.ascontiguousarray(self._rows.T)).reshape(-1, len(placed))
 
-    def solve(self, slack: list[int], off: list[int]) -> tuple[Floats, Floats, Floats, Floats]:
+    def solve(self, slack: list[int], off: list[int], bowed: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Heads' coordinates, contact forces [N], displacements, and springs' forces of droppers [N].
 
         slack : numbers of the droppers without force
         off : numbers of the contacts off the wire
+        bowed : shape (size,), displacements by terms of second order
         """
         model = self._setup.model
         pulls = model.dropper_rows[slack].toarray()
@@ -136,22 +160,26 @@ class _Contact:
             A[part, part] = chain.K
             right[part] = chain.uplift * chain.load
         for j in range(count):
-            self._add_law(A, right, j, total + j, j in off)
+            self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ bowed))
         for i, dropper in enumerate(slack):
             # T₀ + k e, with which a taut dropper would push, is taken off
             row = total + count + i
             A[row, total:] *= -model.dropper_stiffness[dropper]
             A[row, row] += 1.0
-            right[row] = model.dropper_tension[dropper]
+            stretch = float(pulls[i] @ bowed)
+            right[row] = model.dropper_tension[dropper] + model.dropper_stiffness[dropper] * stretch
         solved: Floats = np.linalg.solve(A, right).astype(float)
-        q: Floats = gives @ solved[total:]
+        q: Floats = gives @ solved[total:] + bowed
         spring: Floats = model.dropper_tension + model.dropper_stiffness * (model.dropper_rows @ q)
         heads: Floats = solved[:total]
         forces: Floats = solved[total : total + count]
         return heads, forces, q, spring
 
-    def _add_law(self, A: Floats, right: Floats, j: int, row: int, off: bool) -> None:
-        """The contact's law: wire's height + force / k = head's height; and its push on the head."""
+    def _add_law(self, A: Floats, right: Floats, j: int, row: int, off: bool, raised: float) -> None:
+        """The contact's law: wire's height + force / k = head's height; and its push on the head.
+
+        raised : [m] of the wire there, whatever the contacts do
+        """
         p, touch = self._contacts[j]
         chain, part = self._chains[p], slice(self._first[p], self._first[p + 1])
         head = touch.heave + self._lateral[j] * touch.roll
@@ -162,7 +190,7 @@ class _Contact:
             return
         A[row, row] += 1 / k
         A[row, part] = -head
-        right[row] = chain.preload / k - self._rest[j]
+        right[row] = chain.preload / k - self._rest[j] - raised
 
     def started(self, heads: Floats, forces: Floats, q: Floats) -> list[Chain]:
         """The pantographs where they start."""

@@ -5,12 +5,8 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import catenary_fe as cf
-from catenary_fe.analysis.compiled import plain
-from catenary_fe.analysis.linear_forces import one_way, solve_one_way
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 
 
@@ -170,11 +166,3 @@ def test_bad_questions(short_shape, pantograph):
     bent = cf.ElasticPantograph(law=((0.0, 200.0), (0.1, 0.0)))
     with pytest.raises(cf.InputError, match="straight law"):
         cf.simulate(short_shape, [bent], speed=70.0, method="linearised")
-
-
-@settings(deadline=None)  # the first call compiles
-@given(spring=st.floats(-500, 500), damper=st.floats(-500, 500), cs=st.floats(0, 3), cd=st.floats(0, 3))
-def test_the_law_is_solved_exactly(spring, damper, cs, cd):
-    force = plain(solve_one_way)(spring, damper, cs, cd)
-    assert force >= 0
-    assert force == pytest.approx(plain(one_way)(spring - cs * force, damper - cd * force), abs=1e-9)
