@@ -140,6 +140,85 @@ def test_given_lengths_give_the_heights_back(reference, reference_shape):
     assert back.dropper_forces == pytest.approx(reference_shape.dropper_forces, rel=2e-3)
 
 
+def cut(line, spans=3):
+    """The first spans of a line."""
+    return line.replace(spans=line.spans[:spans], supports=line.supports[: spans + 1], evaluated_spans=None)
+
+
+def with_arms(line, arm):
+    """The line with each of its steady arms changed by a function."""
+    return line.replace(supports=tuple(s.replace(steady_arm=arm(s.steady_arm)) for s in line.supports))
+
+
+def spring(_):
+    return cf.SteadyArm(stiffness=2000.0, preload=40.0, holds_design_height=False)
+
+
+def inclined(arm):
+    return arm.replace(holds_design_height=False, inclination=0.15)
+
+
+@pytest.mark.parametrize(
+    ("layout", "arm", "metres"),
+    [
+        ("en50318_2002", spring, 1e-6),
+        ("en50318_2018_ac_simple", None, 1e-6),
+        ("en50318_2018_ac_simple", spring, 1e-6),
+        ("en50318_2018_ac_simple", inclined, 1e-6),
+        ("dc_3kv_twin", None, 3e-6),
+        ("en50318_2018_ac_stitched", None, 1e-3),  # stitch wires are loose: passes end earlier than heights
+    ],
+)
+def test_given_lengths_give_any_line_back(reference_layout, layout, arm, metres):
+    """Springs, links, set by height or by inclination, two contact wires, stitch wires."""
+    line = cut(cf.load_catenary(reference_layout.parent / f"{layout}.toml"))
+    if arm:  # of the second mast; the first holds the design height
+        free = line.supports[2].replace(steady_arm=arm(line.supports[2].steady_arm))
+        line = line.replace(supports=(*line.supports[:2], free, line.supports[3]))
+    there = cf.find_form(line)
+    back = cf.find_heights(line, there.dropper_lengths)
+    for mine, other in zip(back.wires, there.wires, strict=True):
+        assert mine.z == pytest.approx(other.z, abs=metres)
+        assert mine.y == pytest.approx(other.y, abs=metres)
+    assert back.dropper_forces == pytest.approx(there.dropper_forces, abs=1e3 * metres)
+    for kind in ("arm_forces", "support_forces"):
+        mine, other = (getattr(shape.installation, kind) for shape in (back, there))
+        assert mine == pytest.approx(other, abs=5e3 * metres), kind
+
+
+def test_arms_carry_what_they_say(reference_layout):
+    """A spring its preload less what the wire rose; a link's pull has the direction of the link."""
+    line = with_arms(cut(cf.load_catenary(reference_layout)), spring)
+    shape = cf.find_form(line)
+    risen = shape.contact_wire_height(line.support_positions[1]) - line.contact_wire_height
+    assert risen < -1e-3
+    assert shape.installation.arm_forces[0, 1, -1] == pytest.approx(40.0 - 2000.0 * risen, abs=1e-3)
+    path = reference_layout.parent / "en50318_2018_ac_simple.toml"
+    shape = cf.find_form(with_arms(cut(cf.load_catenary(path)), inclined))
+    left, up = shape.installation.arm_forces[0, 1]
+    assert up == pytest.approx(abs(left) * np.tan(0.15), rel=1e-6)
+
+
+def test_a_form_that_is_not_met_is_refused(reference_layout, monkeypatch):
+    from catenary_fe.equilibrium import form
+
+    monkeypatch.setattr(form, "_SETTLED", 10.0)  # ends after the first pass
+    with pytest.raises(cf.SolverError, match=r"span \d: dropper \d at .* misses its design height by"):
+        cf.find_form(cut(cf.load_catenary(reference_layout.parent / "en50318_2018_ac_stitched.toml")))
+
+
+def test_a_line_without_droppers_sags_by_itself(reference):
+    line = cut(reference)
+    line = line.replace(spans=tuple(s.replace(droppers=()) for s in line.spans))
+    wire = line.contact_wire
+    sag = wire.mass_per_length * G * 60**2 / (8 * wire.tension)
+    rounding = (
+        wire.mass_per_length * G * 60 / wire.tension * np.sqrt(wire.bending_stiffness / wire.tension) / 2
+    )
+    for shape in (cf.find_form(line), cf.find_heights(line, [])):
+        assert shape.contact_wire_height(90.0) == pytest.approx(5.3 - sag + rounding, abs=1e-3)
+
+
 def test_a_longer_dropper_lowers_the_wire(reference, reference_shape):
     lengths = reference_shape.dropper_lengths.copy()
     lengths[40] += 2e-3

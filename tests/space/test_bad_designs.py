@@ -13,6 +13,9 @@ def with_arm(line, **changes):
 def test_an_arm_on_the_wrong_side_would_push(staggered):
     with pytest.raises(cf.InputError, match=r"support 2: the arm on the left would have to push with 37\d N"):
         cf.find_form(with_arm(staggered, side="left"))
+    lengths = cf.find_form(staggered).dropper_lengths
+    with pytest.raises(cf.InputError, match="support 2: the arm on the left would have to push"):
+        cf.find_heights(with_arm(staggered, side="left"), lengths)
 
 
 def test_nothing_pulls_an_arm_without_stagger(staggered):
