@@ -82,8 +82,8 @@ def simulate(
         compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
         the static state, many times faster: slack droppers and contact are solved in each step, large motions
         are not there. It warns where they matter.
-    energy : record energy, work and losses of the whole system, which a check then judges; with the method
-        "exudyn" only, a quarter slower
+    energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
+        judges, a quarter slower; compiled runs with the method "nonlinear" always do
     checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
         again, the same run goes on from it, with the same result. It is removed at the end
 
@@ -97,8 +97,8 @@ def simulate(
     check_speed(speed)
     if method not in get_args(Method):
         raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")
-    if energy and method != "exudyn":
-        raise InputError(f"energy: method '{method}' does not record it; take the method 'exudyn'")
+    if energy and method == "linearised":
+        raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
     time = time or TimeSettings()
     if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")

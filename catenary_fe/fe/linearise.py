@@ -105,6 +105,20 @@ def tangent_blocks(cables: Cables, values: Floats) -> Floats:
     return total.reshape(count, 4 * axes, 4 * axes)
 
 
+def strain_energy(cables: Cables, values: Floats) -> Floats:
+    """[J], shape (elements,), of elements with positions and slopes ``values``, shape (elements, 4, axes)."""
+    found = np.zeros(cables.length.size)
+    for xi, share in zip(*_AXIAL, strict=True):
+        a, _ = _weights((xi + 1) / 2, cables.length)
+        stretch = np.linalg.norm(np.einsum("ei,eik->ek", a, values), axis=1) - 1 - cables.rest_strain
+        found += share / 4 * cables.axial_stiffness * cables.length * stretch**2
+    for xi, share in zip(*_BENDING, strict=True):
+        r, bend = (np.einsum("ei,eik->ek", w, values) for w in _weights((xi + 1) / 2, cables.length))
+        g, bb, ab = ((u * v).sum(axis=1) for u, v in ((r, r), (bend, bend), (r, bend)))
+        found += share / 4 * cables.bending_stiffness * cables.length * (g * bb - ab**2) / g**2
+    return found
+
+
 def _weights(xi: float, L: Floats) -> tuple[Floats, Floats]:
     """Weights of an element's four vectors in r' and in r'', shape (elements, 4) each."""
     one = np.ones_like(L)

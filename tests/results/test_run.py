@@ -10,7 +10,7 @@ import catenary_fe as cf
 
 def test_every_variable_has_a_unit_and_a_name(short_run):
     for variable in short_run.data.data_vars.values():
-        assert variable.attrs["units"] in ("m", "N", "1")
+        assert variable.attrs["units"] in ("m", "N", "J", "1")
         assert variable.attrs["long_name"]
     assert short_run.data["contact_wire_height"].dims == ("wire_time", "x")
 

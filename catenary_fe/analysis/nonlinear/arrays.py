@@ -95,6 +95,19 @@ class Motion(NamedTuple):
     inner: Floats
 
 
+class Account(NamedTuple):
+    """What contacts put into wires and masses, and what dampers take: by the trapezoidal rule.
+
+    power : [W], shape (2,), of contacts and of dampers, at the end of the last step or part of one
+    work : [J], shape (2,), until then
+    history : [J], shape (2, steps + 1)
+    """
+
+    power: Floats
+    work: Floats
+    history: Floats
+
+
 class Slack(NamedTuple):
     """How droppers give, for those that are not as taut ones.
 

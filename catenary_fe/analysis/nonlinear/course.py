@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Records
+from catenary_fe.analysis.linear_arrays import Records, Scheme
+from catenary_fe.analysis.nonlinear.energy import EnergyRecord
 from catenary_fe.analysis.nonlinear.state import State
 
 if TYPE_CHECKING:
+    from catenary_fe.fe.drive import Journey
     from catenary_fe.fe.tension import TensionRecord
 
 _BY_STEP = ("force", "height", "masses", "droppers", "supports")
@@ -24,6 +27,23 @@ class Course:
     state: State
     records: Records
     tension: TensionRecord
+    energy: EnergyRecord
+
+    def read(self, scheme: Scheme, displacements: NDArray[np.float64]) -> None:
+        """Take tensions and energy where the run is now; displacements of all coordinates."""
+        self.tension.read(scheme.h * int(self.state.heads.step[0]), displacements)
+        self.energy.read(self.state, scheme)
+
+    def joined(self, journey: Journey) -> Journey:
+        """The journey with what was read on the way."""
+        times = self.tension.times
+        return replace(
+            self.tension.joined(journey),
+            energy=np.array(self.energy.values),
+            energy_times=times,
+            driven_work=self.state.account.history[0],
+            lost_work=self.state.account.history[1],
+        )
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What a run needs to go on from here with the same result."""
@@ -31,6 +51,8 @@ class Course:
         found = self.state.arrays() | {
             "tension_times": self.tension.times,
             "tension_changes": self.tension.changes,
+            "energies": np.array(self.energy.values),
+            "account": self.state.account.history[:, : done + 1],
         }
         for name in _BY_STEP:
             found[f"record_{name}"] = getattr(self.records, name)[..., : done + 1]
@@ -42,7 +64,9 @@ class Course:
         """Go on from :meth:`arrays`; returns the number of steps done."""
         self.state.go_on(arrays)
         self.tension.go_on(arrays["tension_times"], arrays["tension_changes"])
+        self.energy.values = arrays["energies"].tolist()
         done = int(self.state.heads.step[0])
+        self.state.account.history[:, : done + 1] = arrays["account"]
         for name in _BY_STEP:
             getattr(self.records, name)[..., : done + 1] = arrays[f"record_{name}"]
         if self.records.every:

@@ -31,13 +31,15 @@ def take_links(links: Ends, total: Floats, inner: Floats) -> None:
 @compiled
 def take_droppers(
     system: System, scheme: Scheme, motion: Motion, slack: Slack, forces: Floats, time: int
-) -> None:
+) -> float:
     """Add the droppers' pull to the forces on all coordinates; write it down; find what each lacks.
 
     forces : shape (droppers, times)
+
+    Returns the power [W] that their dampers take.
     """
     droppers, total, inner = system.droppers, motion.total, motion.inner
-    axes = droppers.pivot.shape[1]
+    axes, lost = droppers.pivot.shape[1], 0.0
     for i in range(droppers.first.size):
         a, b = droppers.first[i], droppers.last[i]
         square, work = 0.0, 0.0
@@ -50,12 +52,14 @@ def take_droppers(
         damper = droppers.d[i] * work / length
         force = one_way(spring, damper)
         forces[i, time] = force
+        lost += (force - max(spring, 0.0)) * work / length
         slack.lack[i] = _lack(scheme, droppers.k[i], droppers.d[i], spring, damper)
         for k in range(axes):
             direction = (total[b + k] - total[a + k]) / length
             inner[a + k] += force * direction
             inner[b + k] -= force * direction
             slack.row[i, k], slack.row[i, axes + k] = -direction, direction
+    return lost
 
 
 @compiled

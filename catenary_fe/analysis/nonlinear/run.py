@@ -16,6 +16,7 @@ from catenary_fe.analysis.linear_setup import make_scheme
 from catenary_fe.analysis.linear_start import Chain, Start, chain_of
 from catenary_fe.analysis.nonlinear.arrays import Factor
 from catenary_fe.analysis.nonlinear.course import Course
+from catenary_fe.analysis.nonlinear.energy import EnergyRecord
 from catenary_fe.analysis.nonlinear.setup import make_factor, make_stations, make_system
 from catenary_fe.analysis.nonlinear.state import State
 from catenary_fe.analysis.nonlinear.steps import advance
@@ -86,9 +87,11 @@ class NonlinearCatenary:
         records = self._records(sizes, total)
         load_heads(heads, records, 0, self._scheme, start, steps)
         state = State.at(start, total, self._system, heads, sizes)
-        tension, block = TensionRecord(self._gauge), max(1, round(INTERVAL / h))
-        tension.read(0.0, begin.wires)
-        course, self.iterations, self._notes = Course(state, records, tension), 0, []
+        block = max(1, round(INTERVAL / h))
+        energy = EnergyRecord(self._model, start.chains)
+        course = Course(state, records, TensionRecord(self._gauge), energy)
+        course.read(self._scheme, begin.wires)
+        self.iterations, self._notes = 0, []
         done = 0
         if checkpoint and checkpoint.kept:
             done, self._notes = course.go_on(checkpoint.kept), checkpoint.kept["notes"].tolist()
@@ -98,15 +101,15 @@ class NonlinearCatenary:
                 self._advance(state, records, start, count)
                 done += count
                 if count == block:
-                    tension.read(h * done, state.motion.total - self._model.reference)
+                    course.read(self._scheme, state.motion.total - self._model.reference)
                 if progress:
                     progress(done / steps)
                 if checkpoint:
                     checkpoint.save_when_due(lambda: course.arrays() | {"notes": np.array(self._notes)})
         except (SolverError, KeyboardInterrupt) as error:
             journey = read_journey(records, heads, 0, start, steps, h, shape)
-            raise Stopped(tension.joined(journey).until(done), error) from None
-        journey = tension.joined(read_journey(records, heads, 0, start, steps, h, shape))
+            raise Stopped(course.joined(journey).until(done), error) from None
+        journey = course.joined(read_journey(records, heads, 0, start, steps, h, shape))
         return replace(journey, notes=tuple(self._notes))
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:
@@ -149,7 +152,7 @@ class NonlinearCatenary:
         flat = Wires(*(array.reshape(-1) for array in state.wires))
         done, iterations = advance(
             scheme, self._system, self._stations, factor, state.wires, flat, state.motion, state.slack,
-            state.heads, state.work, records, steps, parts, self._time.tolerance,
+            state.heads, state.work, records, state.account, steps, parts, self._time.tolerance,
         )  # fmt: skip
         self.iterations += iterations
         return bool(done)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.analysis.linear_arrays import Heads, Scheme, Wires, Work
 from catenary_fe.analysis.linear_records import Sizes
 from catenary_fe.analysis.linear_start import Chain, Start
-from catenary_fe.analysis.nonlinear.arrays import Motion, Slack, System
+from catenary_fe.analysis.nonlinear.arrays import Account, Motion, Slack, System
 from catenary_fe.analysis.nonlinear.forces import ROOM
 
 Floats = NDArray[np.float64]
@@ -27,6 +27,7 @@ class State:
     slack: Slack
     heads: Heads
     work: Work
+    account: Account
 
     @classmethod
     def at(cls, start: Start, total: Floats, system: System, heads: Heads, sizes: Sizes) -> State:
@@ -38,7 +39,8 @@ class State:
         )
         work = _work(sizes)
         work.force[0] = [touch.force for chain in start.chains for touch in chain.touches]
-        return cls(wires, motion, _slack(system), heads, work)
+        account = Account(np.zeros(2), np.zeros(2), np.zeros((2, sizes.steps + 1)))
+        return cls(wires, motion, _slack(system), heads, work, account)
 
     @property
     def kept(self) -> list[NDArray[np.generic]]:
@@ -53,6 +55,8 @@ class State:
             heads.c,
             heads.x,
             heads.step,
+            self.account.power,
+            self.account.work,
         ]
 
     def snapshot(self) -> list[NDArray[np.generic]]:

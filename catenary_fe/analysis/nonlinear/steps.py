@@ -22,7 +22,7 @@ from catenary_fe.analysis.linear_forces import (
 )
 from catenary_fe.analysis.linear_kernel import predict, take_one
 from catenary_fe.analysis.nonlinear import arrays, cables, forces
-from catenary_fe.analysis.nonlinear.arrays import Factor, Motion, Slack, Stations, System
+from catenary_fe.analysis.nonlinear.arrays import Account, Factor, Motion, Slack, Stations, System
 from catenary_fe.analysis.nonlinear.cables import take_cables
 from catenary_fe.analysis.nonlinear.forces import give_at, soften, solve, take_droppers, take_links
 
@@ -146,6 +146,41 @@ def _record(
             to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
 
 
+@compiled
+def _damped(motion: Motion, residual: Floats) -> float:
+    """Power [W] that the wires' own dampers take, whose forces alone are in the residual."""
+    lost = 0.0
+    for i in range(residual.size):
+        lost -= motion.v[i] * residual[i]
+    return lost
+
+
+@compiled
+def _book(scheme: Scheme, wires: Wires, heads: Heads, work: Work, account: Account, lost: float) -> None:
+    """Add a step, or a part of one: the contacts' power on wires and masses, what dampers take."""
+    power = 0.0
+    for j in range(heads.owner.shape[1]):
+        p = heads.owner[0, j]
+        if p < 0:
+            continue
+        rate = 0.0
+        for m in range(4):
+            i = work.at[0, j, m]
+            if i >= 0:
+                rate += work.shape[0, j, m] * (wires.v[i, 0] + scheme.g * wires.x[i, 0])
+        for s in range(heads.x.shape[2]):
+            rate -= work.head[0, j, s] * (heads.v[0, p, s] + scheme.g * heads.x[0, p, s])
+        power += work.force[0, j] * rate
+    for p in range(heads.x.shape[1]):
+        for s in range(heads.x.shape[2]):
+            for r in range(heads.x.shape[2]):
+                rates = heads.v[0, p, s] + scheme.g * heads.x[0, p, s]
+                lost += rates * heads.D[0, p, s, r] * (heads.v[0, p, r] + scheme.g * heads.x[0, p, r])
+    account.work[0] += scheme.h * (account.power[0] + power) / 2
+    account.work[1] += scheme.h * (account.power[1] + lost) / 2
+    account.power[0], account.power[1] = power, lost
+
+
 def _loop(sources: str) -> Any:
     """Steps; ``sources`` is the stamp of all that they call."""
 
@@ -162,6 +197,7 @@ def _loop(sources: str) -> Any:
         heads: Heads,
         work: Work,
         records: Records,
+        account: Account,
         steps: int,
         parts: int,
         tolerance: float,
@@ -172,21 +208,23 @@ def _loop(sources: str) -> Any:
         for n in range(begin, begin + steps * parts):
             predict(scheme, 0.0, flat)
             _place(scheme, stations, factor, heads, work, motion.total, scheme.h * (n + 1))
-            residual, converged, change = motion.residual, False, FAR
+            residual, converged, change, lost = motion.residual, False, FAR, 0.0
             for iteration in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
                 motion.inner[:] = 0.0
                 take_cables(axes, system.elements, motion.total, motion.inner)
-                take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
+                residual[:] = 0.0
+                take_one(system.damping, motion.v, residual)
+                lost = _damped(motion, residual)
+                lost += take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
-                    residual[i] = system.force[i] - system.ground[i] * motion.q[i]
+                    residual[i] += system.force[i] - system.ground[i] * motion.q[i]
                 for i in range(system.place.size):
                     if system.place[i] >= 0:
                         residual[system.place[i]] += motion.inner[i]
                 take_one(system.mass, flat.x, residual)
-                take_one(system.damping, motion.v, residual)
                 _contacts(heads, work, residual)
                 solve(factor, residual)
                 soften(factor, slack, residual)
@@ -206,9 +244,12 @@ def _loop(sources: str) -> Any:
                     break
             if not converged:
                 return False, iterations
+            _book(scheme, wires, heads, work, account, lost)
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, work, records)
                 heads.step[0] += 1
+                for i in range(2):
+                    account.history[i, heads.step[0]] = account.work[i]
         return True, iterations
 
     return advance
