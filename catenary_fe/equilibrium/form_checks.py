@@ -38,7 +38,7 @@ def check_pulls(catenary: Catenary, pulls: Floats) -> None:
 def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
     _report(
-        f"{name} has no room: the wire it hangs on lies {-height:.3f} m below its lower clamp; raise"
+        f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
         " system_height or the messenger wire's tension"
         for name, height in zip(dropper_names(catenary), heights, strict=True)
         if height <= 0

@@ -29,6 +29,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 _STATICS = [
+    "tests/equilibrium/test_form_checks.py",
     "tests/equilibrium/test_form.py",
     "tests/space/test_bad_designs.py",
     "tests/space/test_statics_in_space.py",

@@ -1,0 +1,67 @@
+"""What form finding refuses, from both sides of each limit."""
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.equilibrium.form_checks import check_links, check_pulls, check_room
+
+
+@pytest.fixture
+def linked(reference):
+    """Three spans with links, the second of the two inner supports without one."""
+    link = cf.SteadyArm(length=1.0, mass_per_length=0.7)
+    support = reference.supports[1].replace(steady_arm=link, stagger=0.2)
+    bare = support.replace(steady_arm=None, stagger=0.0)
+    return reference.replace(
+        spans=reference.spans[:4], supports=(support, bare, support, support, support), evaluated_spans=None
+    )
+
+
+def forces(left, up, support=2):
+    """[N], shape (1, 5, 2), sound ones but for one support."""
+    found = np.full((1, 5, 2), 200.0)
+    found[0, support] = left, up
+    return found
+
+
+def test_droppers_may_pull_a_little_but_not_push(reference):
+    pulls = np.full(len(reference.droppers), 0.5)
+    check_pulls(reference, pulls)
+    check_pulls(reference, 0 * pulls)
+    pulls[[1, 9]] = -0.1
+    with pytest.raises(cf.InputError) as caught:
+        check_pulls(reference, pulls)
+    assert len(caught.value.problems) == 2
+    assert caught.value.problems[1].startswith("span 2: dropper 1 at 5 m would have to push with 0.1 N")
+
+
+def test_droppers_need_some_room(reference):
+    heights = np.full(len(reference.droppers), 1e-3)
+    check_room(reference, heights)
+    heights[3] = 0.0
+    with pytest.raises(cf.InputError, match=r"span 1: dropper 4 at .* lies 0\.000 m below its"):
+        check_room(reference, heights)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_links_need_a_pull(linked, side):
+    check_links(linked, forces(1.01 * side, 0.5))
+    with pytest.raises(cf.InputError, match=r"support 3: nothing pulls the steady arm sideways \(0\.99 N\)"):
+        check_links(linked, forces(0.99 * side, 0.5))
+
+
+def test_links_stand_up_by_60_degrees_at_most(linked):
+    check_links(linked, forces(100.0, 100 * np.tan(np.radians(59.9))))
+    with pytest.raises(cf.InputError, match="support 3: the steady arm would stand up by 60°"):
+        check_links(linked, forces(100.0, 100 * np.tan(np.radians(60.1))))
+    with pytest.raises(cf.InputError, match="support 4: the steady arm would stand up by 80°"):
+        check_links(linked, forces(100.0, 100 * np.tan(np.radians(80)), support=3))
+
+
+def test_links_pull_to_their_own_side(linked):
+    left = linked.supports[2].replace(steady_arm=linked.supports[2].steady_arm.replace(side="left"))
+    line = linked.replace(supports=(*linked.supports[:2], left, *linked.supports[3:]))
+    check_links(line, forces(2.0, 1.0))
+    with pytest.raises(cf.InputError, match="support 3: the arm on the left would have to push with 2 N"):
+        check_links(line, forces(-2.0, 1.0))
