@@ -201,8 +201,8 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
 def _energy_balance(run: Run) -> Iterator[Check]:
     """Work of uplift forces and moving bases, less what dampers take, is stored and kinetic energy.
 
-    Of the whole system, where the run recorded it: all nonlinear runs do. What is missing of a sound run went into the integrator's
-    own damping: 0.2 % at 1 ms, 0.7 % at 2 ms and twice the usual force.
+    Of the whole system, where the run recorded it: all nonlinear runs do. What is missing of a sound run went
+    into the integrator's own damping: 0.2 % at 1 ms, 0.7 % at 2 ms and twice the usual force.
     """
     if "energy" not in run.data:
         return
