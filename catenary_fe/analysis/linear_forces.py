@@ -17,6 +17,7 @@ from catenary_fe.analysis.linear_kernel import advance
 
 SWEEPS = 60
 TOLERANCE = 1e-9  # [N] by which forces may still change
+UNSETTLED = 1e-3  # [N] by which they may still change after the last sweep
 LOOSE = 1e-3  # [N] of a link's force that is left out
 FAR = 2**31  # beyond all rows
 
@@ -285,6 +286,7 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
     if links > 0:
         work.swing[c, :, :] = 0.0
     free_heads(heads, c)
+    settled, change = True, 0.0
     while True:
         for _ in range(SWEEPS):
             change = 0.0
@@ -295,11 +297,14 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
                 change = max(change, slacken(scheme, line, wires, work, c, work.active[c, a]))
             if links > 0:
                 change = max(change, swing_all(scheme, line, wires, work, c))
-            if change <= TOLERANCE or contacts + work.active_count[c] + links == 1:
+            settled = change <= TOLERANCE or contacts + work.active_count[c] + links == 1
+            if settled:
                 break
         if not find_slack(scheme, line, wires, work, to.droppers[c, :, heads.step[c] + 1], c):
             break
     to.slack[c, heads.step[c] + 1] = keep_slack(scheme, line, wires, work, c)
+    if not settled and change > UNSETTLED:
+        work.force[c, :] = np.nan  # the run's end says so
 
 
 @compiled

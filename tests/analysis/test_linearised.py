@@ -166,3 +166,11 @@ def test_bad_questions(short_shape, pantograph):
     bent = cf.ElasticPantograph(law=((0.0, 200.0), (0.1, 0.0)))
     with pytest.raises(cf.InputError, match="straight law"):
         cf.simulate(short_shape, [bent], speed=70.0, method="linearised")
+
+
+def test_forces_that_do_not_settle_are_no_result(short_shape, pantograph):
+    """Two strips 5 cm apart on a contact as stiff as steel, in steps of 20 ms."""
+    head = cf.Panhead(strips=2, strip_distance=0.05)
+    stiff = pantograph.replace(head=head, contact_stiffness=1e8)
+    with pytest.raises(cf.SolverError, match="did not settle in a step; look for stiffnesses"):
+        cf.simulate(short_shape, [stiff], speed=30.0, method="linearised", time=cf.TimeSettings(step=0.02))
