@@ -164,8 +164,8 @@ class LinearisedCatenary:
         journey = lanes.journey(lane, job.start, job.steps, self._shape)
         if not np.isfinite(journey.contact_force).all():
             return SolverError(
-                f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite, or did not settle in"
-                " a step; look for stiffnesses far from usual values, or use a smaller time step"
+                f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite, or did not"
+                " settle in a step; look for stiffnesses far from usual values, or use a smaller time step"
             )
         warnings = [*case.warnings, *_doubts(journey.time, *lanes.doubts(lane, job.steps))]
         run = make_run(
