@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from catenary_fe.results.files import write_text, written_aside
 from validation.case import Case
 from validation.cases import CASES
 from validation.check import NO_REFERENCE, Check
@@ -31,9 +32,10 @@ def write_report(checks: Sequence[Check], path: Path | str) -> Path:
     pictures: dict[str, bytes] = getattr(checks, "pictures", {})
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     for name, picture in pictures.items():
-        (folder / "pictures" / f"{name}.png").write_bytes(picture)
+        with written_aside(folder / "pictures" / f"{name}.png") as aside:
+            aside.write_bytes(picture)
     report = folder / "REPORT.md"
-    report.write_text(report_text(checks, set(pictures)), encoding="utf-8")
+    write_text(report, report_text(checks, set(pictures)))
     return report
 
 
