@@ -43,11 +43,11 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.equilibrium.cut_wires": _STATICS,
     "catenary_fe.equilibrium.form_checks": _STATICS,
     "catenary_fe.fe.contact": [
+        "tests/fe/test_contact.py",
         "tests/analysis/test_contact_forces.py",
         "tests/analysis/test_elastic_pantograph.py",
-        "tests/fe/test_energy.py",
-        "tests/analysis/test_nonlinear.py",
     ],
+    "catenary_fe.results.guards": ["tests/results/test_guards.py"],
     "catenary_fe.analysis.linear_start": ["tests/analysis/test_contact_forces.py"],
     "catenary_fe.analysis.linear_forces": ["tests/analysis/test_contact_forces.py"],
     "catenary_fe.analysis.nonlinear.forces": ["tests/analysis/test_contact_forces.py"],
