@@ -111,27 +111,48 @@ def test_an_elastic_pantograph_follows_its_law_a_step_ahead():
     assert told.set[0, "damping"] == pytest.approx([150.0, 0, 0])
 
 
-@pytest.mark.parametrize("yielding", [1e-4, 2e-3, 1e-2])
-def test_the_law_and_the_wire_meet(yielding):
-    """A wire that rises by ``yielding`` metres a newton from 50 mm; the law falls in two pieces."""
-    pantograph = cf.ElasticPantograph(law=((0.0, 200.0), (0.1, 100.0), (0.3, 0.0)))
+TWO_PIECES = ((0.0, 400.0), (0.1, 300.0), (0.3, 0.0))
+
+
+def settled(rest, yielding):
+    """Law and wire brought together: force [N], height [m] and how often the wire was solved.
+
+    The wire rises by ``yielding`` metres a newton from ``rest``.
+    """
+    pantograph = cf.ElasticPantograph(law=TWO_PIECES)
     told, _, contacts = moving(pantograph, contact())
-    told.set[0, "stiffness"], told.set[0, "damping"] = [0.0, 0.0, 1000.0], [200.0, 0, 0]
+    told.set[0, "stiffness"], told.set[0, "damping"] = [0.0, 0.0, 1000.0], [400.0, 0, 0]
+    count = 0
 
     def solve():  # the wire under F₀ - k z
+        nonlocal count
+        count += 1
         k, force = told.set[0, "stiffness"][2], told.set[0, "damping"][0]
-        told.height = (0.05 + yielding * force) / (1 + yielding * k)
+        told.height = (rest + yielding * force) / (1 + yielding * k)
 
     solve()
     contacts.settle_laws(solve)
     force = told.set[0, "damping"][0] - told.set[0, "stiffness"][2] * told.height
     assert force == pytest.approx(pantograph.contact_force(told.height), abs=1e-6)
-    assert told.height == pytest.approx(0.05 + yielding * force)
+    assert told.height == pytest.approx(rest + yielding * force)
+    return force, told.height, count
 
 
-def test_pieces_that_alternate_are_halved(monkeypatch):
-    """On a wire that gives much, the straight pieces chase each other."""
+@pytest.mark.parametrize(
+    ("rest", "yielding", "solves"),
+    [(0.05, 1e-4, 1), (0.05, 2e-3, 2), (0.05, 1e-2, 48), (0.0705, 1e-4, 2), (0.4, 1e-4, 2)],
+)
+def test_the_law_and_the_wire_meet(rest, yielding, solves):
+    force, _, count = settled(rest, yielding)
+    assert (force == 0) == (rest > 0.3)
+    assert count == solves  # once with each straight piece; where two chase each other, by halving
+
+
+@pytest.mark.parametrize(("rest", "yielding"), [(0.05, 1e-2), (0.0705, 1e-4), (0.4, 1e-4)])
+def test_pieces_that_alternate_are_halved(monkeypatch, rest, yielding):
+    """Without a try of straight pieces, which would find these."""
     from catenary_fe.fe import contact as module
 
+    before = settled(rest, yielding)[:2]
     monkeypatch.setattr(module, "_PIECES", 0)
-    test_the_law_and_the_wire_meet(1e-2)
+    assert settled(rest, yielding)[:2] == pytest.approx(before)
