@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from catenary_fe.analysis.compiled import plain
 from catenary_fe.analysis.linear_arrays import Line
-from catenary_fe.analysis.linear_kernel import bowed as bow
+from catenary_fe.analysis.linear_kernel import bowed
 from catenary_fe.analysis.linear_setup import Setup
 from catenary_fe.fe.linear_model import ContactLine
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, SolverError
 
 Floats = NDArray[np.float64]
-_CHANGES = 50  # of what is slack or off the wire
-_SETTLED = 1e-9  # of the largest coordinate, by which terms of second order may still move others
+_CHANGES = 50  # of what is slack or off the wire, and of the terms of second order
+_SETTLED = 1e-9  # of the largest of all [m] and tensions [N], by which these may still change one
 
 
 class Track(Protocol):
@@ -86,9 +86,10 @@ class Start:
 def static_contact(
     setup: Setup, pantographs: Sequence[AnyPantograph], uplifts: Floats, positions: Floats, speed: float
 ) -> Start:
-    """Masses, contact forces, and wires in static equilibrium.
+    """Masses, contact forces, and wires in static equilibrium; steady arms that are links on their tangents.
 
-    Raises SolverError where no consistent set of slack droppers is found.
+    Raises SolverError where no consistent set of slack droppers is found, or terms of second order do not
+    settle.
     """
     chains = [
         replace(chain_of(setup.model, pantograph), uplift=float(uplift), position=float(position))
@@ -97,20 +98,22 @@ def static_contact(
     problem = _Contact(setup, chains)
     slack: list[int] = []
     off: list[int] = []
-    bowed = np.zeros(setup.model.size)
+    shifted = np.zeros(setup.model.size)
     for _ in range(_CHANGES):
-        heads, forces, q, spring = problem.solve(slack, off, bowed)
+        heads, forces, q, spring = problem.solve(slack, off, shifted)
         now = np.flatnonzero(spring <= 0).tolist()
         now_off = [j for j, force in enumerate(forces) if force < 0 or j in off]
-        before, bowed = bowed, setup.static.solve(bow_forces(setup.line, q))
-        if now == slack and now_off == off and np.abs(bowed - before).max() <= _SETTLED * np.abs(q).max():
+        before, shifted = shifted, setup.static.solve(bow_forces(setup.line, q))
+        if now == slack and now_off == off and np.abs(shifted - before).max() <= _SETTLED * np.abs(q).max():
             return Start(q, problem.started(heads, forces, q), np.maximum(spring, 0.0), speed)
         slack, off = now, now_off
-    raise SolverError("static contact at the start: no consistent set of slack droppers found")
+    raise SolverError("static contact at the start: no equilibrium with a consistent set of slack droppers")
 
 
 def bow_forces(line: Line, q: Floats) -> Floats:
     """The terms of second order that steps have too, as a right side of K q = f: shape (size,).
+
+    The kernel's ``bow_one`` does the same; but what is compiled for other compiled code Python cannot call.
 
     q : [m], and [N] where tensions are, shape (size,)
     """
@@ -118,7 +121,7 @@ def bow_forces(line: Line, q: Floats) -> Floats:
     at, tension = line.bows.at, line.tensions[line.bows.gap]
     y, s, z, e = (np.where(i >= 0, q[i], 0.0) for i in at.T)
     arrays: Any = (line.bows.length, y, s, z, e)
-    across, first, last, longer = plain(bow)(*arrays)
+    across, first, last, longer = plain(bowed)(*arrays)
     for place, force in zip(at.T, (-across, -first, across, -last), strict=True):
         free = place >= 0
         np.add.at(load, place[free], (q[tension] * force)[free])
@@ -141,12 +144,14 @@ class _Contact:
         self._lateral = [lateral for _, _, lateral in placed]
         self._lifts = setup.static.solve(np.ascontiguousarray(self._rows.T)).reshape(-1, len(placed))
 
-    def solve(self, slack: list[int], off: list[int], bowed: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def solve(
+        self, slack: list[int], off: list[int], shifted: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         """Heads' coordinates, contact forces [N], displacements, and springs' forces of droppers [N].
 
         slack : numbers of the droppers without force
         off : numbers of the contacts off the wire
-        bowed : shape (size,), displacements by terms of second order
+        shifted : shape (size,), displacements by terms of second order
         """
         model = self._setup.model
         pulls = model.dropper_rows[slack].toarray()
@@ -160,16 +165,16 @@ class _Contact:
             A[part, part] = chain.K
             right[part] = chain.uplift * chain.load
         for j in range(count):
-            self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ bowed))
+            self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ shifted))
         for i, dropper in enumerate(slack):
             # T₀ + k e, with which a taut dropper would push, is taken off
             row = total + count + i
             A[row, total:] *= -model.dropper_stiffness[dropper]
             A[row, row] += 1.0
-            stretch = float(pulls[i] @ bowed)
+            stretch = float(pulls[i] @ shifted)
             right[row] = model.dropper_tension[dropper] + model.dropper_stiffness[dropper] * stretch
         solved: Floats = np.linalg.solve(A, right).astype(float)
-        q: Floats = gives @ solved[total:] + bowed
+        q: Floats = gives @ solved[total:] + shifted
         spring: Floats = model.dropper_tension + model.dropper_stiffness * (model.dropper_rows @ q)
         heads: Floats = solved[:total]
         forces: Floats = solved[total : total + count]

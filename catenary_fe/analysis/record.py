@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
 
 Floats = NDArray[np.float64]
+CHECKPOINT_FORM = 2  # rises when what a checkpoint holds changes
 
 
 def make_run(
@@ -159,6 +160,7 @@ def run_key(
 ) -> dict[str, Any]:
     """All that decides a nonlinear run's result, and the versions that computed it."""
     return {
+        "form": CHECKPOINT_FORM,
         "layout": hashlib.sha256(shape.catenary.model_dump_json().encode()).hexdigest(),
         "pantographs": [p.model_dump(mode="json") for p in pantographs],
         "speed": speed,

@@ -34,7 +34,6 @@ Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 Method = Literal["nonlinear", "linearised", "exudyn"]
-ENERGY_INTERVAL = 0.05  # [s] between readings of the energy
 
 Pairs = Sequence[tuple[AnyPantograph, float]]
 Drive = Callable[[Pairs, float, Floats, int, Progress | None, Checkpoint | None], "Journey"]
@@ -83,7 +82,7 @@ def simulate(
         the static state, many times faster: slack droppers and contact are solved in each step, large motions
         are not there. It warns where they matter.
     energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
-        judges, a quarter slower; compiled runs with the method "nonlinear" always do
+        judges, a quarter slower; runs with the method "nonlinear" always do
     checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
         again, the same run goes on from it, with the same result. It is removed at the end
 
@@ -126,7 +125,11 @@ def simulate(
             _log.warning(warning)
         return result
     begin = clock.perf_counter()
-    drive = _compiled(shape, time, store_wire) if compiled else _by_exudyn(shape, time, store_wire, energy)
+    drive = (
+        _compiled(shape, time, store_wire)
+        if compiled
+        else _by_exudyn(shape, time, store_wire, energy or method == "nonlinear")
+    )
     steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
     keeper = None
     if checkpoint is not None:
@@ -156,8 +159,9 @@ def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Dri
 
 def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool) -> Drive:
     from catenary_fe.fe.drive import Trip, drive
+    from catenary_fe.fe.tension import INTERVAL
 
-    every = max(ENERGY_INTERVAL, time.step) if energy else None
+    every = max(INTERVAL, time.step) if energy else None
 
     def drive_it(
         pantographs: Pairs,

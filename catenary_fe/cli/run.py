@@ -105,7 +105,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 @click.option(
     "--energy",
     is_flag=True,
-    help="With the method exudyn, record energy and check its balance, a quarter slower; nonlinear runs do.",
+    help="Record energy and check its balance with the method exudyn, too: a quarter slower.",
 )
 @click.option(
     "--criteria",

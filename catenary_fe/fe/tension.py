@@ -89,8 +89,8 @@ class TensionRecord:
         now = self._gauge.tensions(q)
         if self._first is None:
             self._first = now
-        self._times.append(time)
         self._changes.append(self._gauge.largest_change(now, self._first))
+        self._times.append(time)
 
     def go_on(self, times: Floats, changes: Floats) -> None:
         """Take up readings made before, the first one excepted, which is read again."""
@@ -108,4 +108,4 @@ class TensionRecord:
     @property
     def changes(self) -> Floats:
         """Shape (wires, readings)."""
-        return np.array(self._changes).T
+        return np.array(self._changes[: len(self._times)]).T

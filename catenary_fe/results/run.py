@@ -35,9 +35,8 @@ class Run:
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
         dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
-        were stored; tension_change and, where it was asked for, energy, driven_work and lost_work; each has
-        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions
-        and settings.
+        were stored; of nonlinear runs tension_change, energy, driven_work and lost_work; each has ``units``
+        and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 

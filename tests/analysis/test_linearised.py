@@ -168,9 +168,8 @@ def test_bad_questions(short_shape, pantograph):
         cf.simulate(short_shape, [bent], speed=70.0, method="linearised")
 
 
-def test_forces_that_do_not_settle_are_no_result(short_shape, pantograph):
-    """Two strips 5 cm apart on a contact as stiff as steel, in steps of 20 ms."""
-    head = cf.Panhead(strips=2, strip_distance=0.05)
-    stiff = pantograph.replace(head=head, contact_stiffness=1e8)
+def test_a_run_that_blows_up_is_no_result(short_shape, pantograph):
+    """A contact as stiff as steel in steps of 20 ms: forces grow until they do not settle."""
+    stiff = pantograph.replace(contact_stiffness=1e8)
     with pytest.raises(cf.SolverError, match="did not settle in a step; look for stiffnesses"):
         cf.simulate(short_shape, [stiff], speed=30.0, method="linearised", time=cf.TimeSettings(step=0.02))

@@ -152,6 +152,9 @@ def test_parts_of_steps_help_where_whole_ones_do_not_converge(short_shape, panto
     first, second = (run.data["contact_force"].values[0] for run in runs)
     n = 200
     assert first[:n] == pytest.approx(second[: 2 * n : 2], abs=0.05 * np.std(second[: 2 * n]))
+    for name in ("energy", "driven_work", "lost_work"):
+        first, second = (run.data[name].values[:5] for run in runs)
+        assert first == pytest.approx(second, abs=0.02 * np.abs(second).max()), name
 
 
 def test_a_step_that_does_not_converge_is_an_error(short_shape, pantograph):

@@ -116,6 +116,26 @@ def test_a_compiled_run_keeps_its_finished_blocks(shape, pantograph):
     assert np.array_equal(early.data["contact_wire_height"], whole.data["contact_wire_height"][:shapes])
 
 
+def test_an_interrupt_between_readings_keeps_them_together(shape, pantograph, monkeypatch):
+    from catenary_fe.analysis.nonlinear.energy import EnergyRecord
+    from catenary_fe.fe.tension import TensionRecord
+
+    for record in (EnergyRecord, TensionRecord):
+        read, count = record.read, iter(range(10**6))
+
+        def stopping(self, *state, read=read, count=count):
+            if next(count) == 20:
+                raise KeyboardInterrupt
+            read(self, *state)
+
+        with monkeypatch.context() as patched:
+            patched.setattr(record, "read", stopping)
+            with pytest.raises(cf.Interrupted) as caught:
+                cf.simulate(shape, [pantograph], speed=200 / 3.6)
+        data = caught.value.partial.data
+        assert data.sizes["energy_time"] == data.sizes["tension_time"] == 20
+
+
 def test_next_to_nothing_is_not_kept(shape, pantograph):
     assert interrupted(shape, [pantograph], 0.0).partial is None
 

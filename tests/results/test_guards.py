@@ -154,8 +154,9 @@ def test_energy_balance_of_a_damped_run(balanced, short_run, tmp_path):
             assert "energy balance" in failed(changed(run, **{name: lambda e: 0.9 * e})), name
 
 
-def test_both_integrators_hold_the_same_energy(balanced, short_run):
-    ours, theirs = (run.data["energy"].values for run in (short_run, balanced))
+@pytest.mark.parametrize("name", ["energy", "driven_work", "lost_work"])
+def test_both_integrators_keep_the_same_accounts(balanced, short_run, name):
+    ours, theirs = (run.data[name].values for run in (short_run, balanced))
     assert theirs.max() > 5  # [J]
     assert ours == pytest.approx(theirs, abs=0.02)
 

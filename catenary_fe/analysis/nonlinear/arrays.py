@@ -96,15 +96,33 @@ class Motion(NamedTuple):
 
 
 class Account(NamedTuple):
-    """What contacts put into wires and masses, and what dampers take: by the trapezoidal rule.
+    """What contacts put into wires and masses, and what dampers take.
 
-    power : [W], shape (2,), of contacts and of dampers, at the end of the last step or part of one
-    work : [J], shape (2,), until then
-    history : [J], shape (2, steps + 1)
+    Of a step: the mean of a force at its two ends, along the displacement between them. So all but the last
+    three are of the end of the last step, or part of one.
+
+    work : [J], shape (2,), of contacts and of dampers
+    q, drag : [m], [N], shape (free,), displacements and the wires' own damping
+    heads, head_drag : [m], [N], shape (pantographs, coordinates), likewise
+    force, shape, at, head : as in ``Work`` of one lane, where the contacts were; none at the start
+    damper, span : [N], [m], shape (droppers,), the dampers' part of their forces, and lengths
+    new_damper, new_span : likewise at the end of the step that is iterated
+    history : [J], shape (2, steps + 1), ``work`` at all steps
     """
 
-    power: Floats
     work: Floats
+    q: Floats
+    drag: Floats
+    heads: Floats
+    head_drag: Floats
+    force: Floats
+    shape: Floats
+    at: Integers
+    head: Floats
+    damper: Floats
+    span: Floats
+    new_damper: Floats
+    new_span: Floats
     history: Floats
 
 

@@ -31,15 +31,15 @@ class Course:
 
     def read(self, scheme: Scheme, displacements: NDArray[np.float64]) -> None:
         """Take tensions and energy where the run is now; displacements of all coordinates."""
-        self.tension.read(scheme.h * int(self.state.heads.step[0]), displacements)
         self.energy.read(self.state, scheme)
+        self.tension.read(scheme.h * int(self.state.heads.step[0]), displacements)
 
     def joined(self, journey: Journey) -> Journey:
         """The journey with what was read on the way."""
-        times = self.tension.times
+        times = self.tension.times  # an interrupt may have come between the two readings
         return replace(
             self.tension.joined(journey),
-            energy=np.array(self.energy.values),
+            energy=self.energy.values[: times.size],
             energy_times=times,
             driven_work=self.state.account.history[0],
             lost_work=self.state.account.history[1],
@@ -51,7 +51,7 @@ class Course:
         found = self.state.arrays() | {
             "tension_times": self.tension.times,
             "tension_changes": self.tension.changes,
-            "energies": np.array(self.energy.values),
+            "energies": self.energy.values,
             "account": self.state.account.history[:, : done + 1],
         }
         for name in _BY_STEP:
@@ -64,7 +64,7 @@ class Course:
         """Go on from :meth:`arrays`; returns the number of steps done."""
         self.state.go_on(arrays)
         self.tension.go_on(arrays["tension_times"], arrays["tension_changes"])
-        self.energy.values = arrays["energies"].tolist()
+        self.energy.go_on(arrays["energies"])
         done = int(self.state.heads.step[0])
         self.state.account.history[:, : done + 1] = arrays["account"]
         for name in _BY_STEP:

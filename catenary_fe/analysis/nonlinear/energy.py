@@ -26,7 +26,16 @@ class EnergyRecord:
 
     def __init__(self, model: NonlinearModel, chains: Sequence[Chain]) -> None:
         self._model, self._chains = model, chains
-        self.values: list[float] = []
+        self._values: list[float] = []
+
+    @property
+    def values(self) -> Floats:
+        """[J], shape (readings,)."""
+        return np.array(self._values)
+
+    def go_on(self, values: Floats) -> None:
+        """Take up readings made before, the first one excepted, which is read again."""
+        self._values = values.tolist()
 
     def read(self, state: State, scheme: Scheme) -> None:
         """Take the energy at a step's end."""
@@ -38,7 +47,7 @@ class EnergyRecord:
             x: Floats = heads.x[0, p, :m]
             y, w = heads.q[0, p, :m] + scheme.b * x, heads.v[0, p, :m] + scheme.g * x
             total += float((w @ chain.M @ w + y @ chain.K @ y) / 2 - chain.uplift * chain.load @ y)
-        self.values.append(total)
+        self._values.append(total)
 
     def _of_wires(self, q: Floats, v: Floats) -> float:
         from catenary_fe.fe.linearise import strain_energy

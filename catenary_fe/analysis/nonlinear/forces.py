@@ -8,7 +8,7 @@ from catenary_fe.analysis.compiled import compiled
 from catenary_fe.analysis.linear_arrays import Floats, Integers, Scheme
 from catenary_fe.analysis.linear_forces import one_way
 from catenary_fe.analysis.linear_kernel import lower_one, upper_one
-from catenary_fe.analysis.nonlinear.arrays import Ends, Factor, Motion, Slack, System
+from catenary_fe.analysis.nonlinear.arrays import Account, Ends, Factor, Motion, Slack, System
 
 REACH = 64  # groups of four coordinates beyond which a force is not felt within a step
 ROOM = 4 * 3 * REACH  # coordinates of the largest window
@@ -30,16 +30,20 @@ def take_links(links: Ends, total: Floats, inner: Floats) -> None:
 
 @compiled
 def take_droppers(
-    system: System, scheme: Scheme, motion: Motion, slack: Slack, forces: Floats, time: int
-) -> float:
+    system: System,
+    scheme: Scheme,
+    motion: Motion,
+    slack: Slack,
+    account: Account,
+    forces: Floats,
+    time: int,
+) -> None:
     """Add the droppers' pull to the forces on all coordinates; write it down; find what each lacks.
 
     forces : shape (droppers, times)
-
-    Returns the power [W] that their dampers take.
     """
     droppers, total, inner = system.droppers, motion.total, motion.inner
-    axes, lost = droppers.pivot.shape[1], 0.0
+    axes = droppers.pivot.shape[1]
     for i in range(droppers.first.size):
         a, b = droppers.first[i], droppers.last[i]
         square, work = 0.0, 0.0
@@ -52,14 +56,13 @@ def take_droppers(
         damper = droppers.d[i] * work / length
         force = one_way(spring, damper)
         forces[i, time] = force
-        lost += (force - max(spring, 0.0)) * work / length
+        account.new_damper[i], account.new_span[i] = force - max(spring, 0.0), length
         slack.lack[i] = _lack(scheme, droppers.k[i], droppers.d[i], spring, damper)
         for k in range(axes):
             direction = (total[b + k] - total[a + k]) / length
             inner[a + k] += force * direction
             inner[b + k] -= force * direction
             slack.row[i, k], slack.row[i, axes + k] = -direction, direction
-    return lost
 
 
 @compiled

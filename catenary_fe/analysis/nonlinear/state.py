@@ -39,8 +39,7 @@ class State:
         )
         work = _work(sizes)
         work.force[0] = [touch.force for chain in start.chains for touch in chain.touches]
-        account = Account(np.zeros(2), np.zeros(2), np.zeros((2, sizes.steps + 1)))
-        return cls(wires, motion, _slack(system), heads, work, account)
+        return cls(wires, motion, _slack(system), heads, work, _account(start, total, system, sizes))
 
     @property
     def kept(self) -> list[NDArray[np.generic]]:
@@ -55,8 +54,7 @@ class State:
             heads.c,
             heads.x,
             heads.step,
-            self.account.power,
-            self.account.work,
+            *self.account[:-1],
         ]
 
     def snapshot(self) -> list[NDArray[np.generic]]:
@@ -110,6 +108,33 @@ def _work(sizes: Sizes) -> Work:
         at=np.zeros((1, j, 4), dtype=np.int64),
         head=np.zeros((1, j, m)),
         soft=np.zeros((1, j, m)),
+    )
+
+
+def _account(start: Start, total: Floats, system: System, sizes: Sizes) -> Account:
+    j, masses = sizes.contacts, (sizes.pantographs, sizes.coordinates)
+    droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
+    span = total[droppers.last[:, None] + axes] - total[droppers.first[:, None] + axes]
+    lengths: Floats = np.linalg.norm(span, axis=1)
+    heads = np.zeros(masses)
+    for p, chain in enumerate(start.chains):
+        heads[p, : chain.q.size] = chain.q
+    free = start.q.size
+    return Account(
+        work=np.zeros(2),
+        q=start.q.copy(),
+        drag=np.zeros(free),
+        heads=heads,
+        head_drag=np.zeros(masses),
+        force=np.zeros(j),
+        shape=np.zeros((j, 4)),
+        at=np.full((j, 4), -1),
+        head=np.zeros((j, sizes.coordinates)),
+        damper=np.zeros(lengths.size),
+        span=lengths.copy(),
+        new_damper=np.zeros(lengths.size),
+        new_span=lengths.copy(),
+        history=np.zeros((2, sizes.steps + 1)),
     )
 
 

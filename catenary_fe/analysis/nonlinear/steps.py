@@ -147,38 +147,72 @@ def _record(
 
 
 @compiled
-def _damped(motion: Motion, residual: Floats) -> float:
-    """Power [W] that the wires' own dampers take, whose forces alone are in the residual."""
-    lost = 0.0
-    for i in range(residual.size):
-        lost -= motion.v[i] * residual[i]
-    return lost
+def _book(
+    system: System,
+    scheme: Scheme,
+    wires: Wires,
+    motion: Motion,
+    heads: Heads,
+    work: Work,
+    account: Account,
+) -> None:
+    """Add what contacts did and dampers took in this step, or part of one."""
+    moved, drag, lost = motion.before, motion.residual, 0.0
+    for i in range(moved.size):
+        q = wires.q[i, 0] + scheme.b * wires.x[i, 0]
+        moved[i], account.q[i] = q - account.q[i], q
+        motion.v[i] = wires.v[i, 0] + scheme.g * wires.x[i, 0]
+    drag[:] = 0.0
+    take_one(system.damping, motion.v, drag)  # its negative
+    for i in range(moved.size):
+        lost += (account.drag[i] - drag[i]) * moved[i] / 2
+        account.drag[i] = -drag[i]
+    for i in range(account.span.size):
+        stretch = account.new_span[i] - account.span[i]
+        lost += (account.damper[i] + account.new_damper[i]) * stretch / 2
+        account.damper[i], account.span[i] = account.new_damper[i], account.new_span[i]
+    account.work[0] += _book_contacts(scheme, heads, work, account, moved)
+    account.work[1] += lost + _book_heads(scheme, heads, account)
 
 
 @compiled
-def _book(scheme: Scheme, wires: Wires, heads: Heads, work: Work, account: Account, lost: float) -> None:
-    """Add a step, or a part of one: the contacts' power on wires and masses, what dampers take."""
-    power = 0.0
+def _book_contacts(scheme: Scheme, heads: Heads, work: Work, account: Account, moved: Floats) -> float:
+    """Work of the contacts on wires and masses [J]."""
+    driven = 0.0
     for j in range(heads.owner.shape[1]):
         p = heads.owner[0, j]
         if p < 0:
             continue
-        rate = 0.0
+        before, now = 0.0, 0.0
         for m in range(4):
-            i = work.at[0, j, m]
-            if i >= 0:
-                rate += work.shape[0, j, m] * (wires.v[i, 0] + scheme.g * wires.x[i, 0])
+            if account.at[j, m] >= 0:
+                before += account.shape[j, m] * moved[account.at[j, m]]
+            if work.at[0, j, m] >= 0:
+                now += work.shape[0, j, m] * moved[work.at[0, j, m]]
+            account.at[j, m], account.shape[j, m] = work.at[0, j, m], work.shape[0, j, m]
         for s in range(heads.x.shape[2]):
-            rate -= work.head[0, j, s] * (heads.v[0, p, s] + scheme.g * heads.x[0, p, s])
-        power += work.force[0, j] * rate
+            rise = heads.q[0, p, s] + scheme.b * heads.x[0, p, s] - account.heads[p, s]
+            before -= account.head[j, s] * rise
+            now -= work.head[0, j, s] * rise
+            account.head[j, s] = work.head[0, j, s]
+        driven += (account.force[j] * before + work.force[0, j] * now) / 2
+        account.force[j] = work.force[0, j]
+    return driven
+
+
+@compiled
+def _book_heads(scheme: Scheme, heads: Heads, account: Account) -> float:
+    """What the pantographs' dampers took [J]."""
+    lost = 0.0
     for p in range(heads.x.shape[1]):
         for s in range(heads.x.shape[2]):
+            drag = 0.0
             for r in range(heads.x.shape[2]):
-                rates = heads.v[0, p, s] + scheme.g * heads.x[0, p, s]
-                lost += rates * heads.D[0, p, s, r] * (heads.v[0, p, r] + scheme.g * heads.x[0, p, r])
-    account.work[0] += scheme.h * (account.power[0] + power) / 2
-    account.work[1] += scheme.h * (account.power[1] + lost) / 2
-    account.power[0], account.power[1] = power, lost
+                drag += heads.D[0, p, s, r] * (heads.v[0, p, r] + scheme.g * heads.x[0, p, r])
+            place = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+            lost += (account.head_drag[p, s] + drag) * (place - account.heads[p, s]) / 2
+            account.heads[p, s], account.head_drag[p, s] = place, drag
+    return lost
 
 
 def _loop(sources: str) -> Any:
@@ -208,23 +242,21 @@ def _loop(sources: str) -> Any:
         for n in range(begin, begin + steps * parts):
             predict(scheme, 0.0, flat)
             _place(scheme, stations, factor, heads, work, motion.total, scheme.h * (n + 1))
-            residual, converged, change, lost = motion.residual, False, FAR, 0.0
+            residual, converged, change = motion.residual, False, FAR
             for iteration in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
                 motion.inner[:] = 0.0
                 take_cables(axes, system.elements, motion.total, motion.inner)
-                residual[:] = 0.0
-                take_one(system.damping, motion.v, residual)
-                lost = _damped(motion, residual)
-                lost += take_droppers(system, scheme, motion, slack, records.droppers[0], heads.step[0] + 1)
+                take_droppers(system, scheme, motion, slack, account, records.droppers[0], heads.step[0] + 1)
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
-                    residual[i] += system.force[i] - system.ground[i] * motion.q[i]
+                    residual[i] = system.force[i] - system.ground[i] * motion.q[i]
                 for i in range(system.place.size):
                     if system.place[i] >= 0:
                         residual[system.place[i]] += motion.inner[i]
                 take_one(system.mass, flat.x, residual)
+                take_one(system.damping, motion.v, residual)
                 _contacts(heads, work, residual)
                 solve(factor, residual)
                 soften(factor, slack, residual)
@@ -244,7 +276,7 @@ def _loop(sources: str) -> Any:
                     break
             if not converged:
                 return False, iterations
-            _book(scheme, wires, heads, work, account, lost)
+            _book(system, scheme, wires, motion, heads, work, account)
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, work, records)
                 heads.step[0] += 1

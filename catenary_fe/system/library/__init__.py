@@ -12,7 +12,7 @@ from typing import Any
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
-from catenary_fe.system.parameters import Number, Parameters, Positive, Text, shorten
+from catenary_fe.system.parameters import Number, Parameters, Positive, Sideways, Text, shorten
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
@@ -33,7 +33,7 @@ class Line(Parameters):
     """[m] above the rail, where known"""
     pre_sag: Number = 0.0
     """[m] at mid-span"""
-    stagger: Number | None = None
+    stagger: Sideways | None = None
     """[m] to either side, where known"""
     stitch_wire: Wire | None = None
     stitch_wire_length: Positive | None = None
