@@ -35,6 +35,7 @@ _STATICS = [
     "tests/space/test_statics_in_space.py",
     "tests/space/test_stitch_and_twin_wires.py",
 ]
+_CONTACT = "tests/analysis/test_contact_forces.py"
 TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.statistics": ["tests/results/test_statistics.py"],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
@@ -44,13 +45,29 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.equilibrium.form_checks": _STATICS,
     "catenary_fe.fe.contact": [
         "tests/fe/test_contact.py",
-        "tests/analysis/test_contact_forces.py",
+        _CONTACT,
         "tests/analysis/test_elastic_pantograph.py",
     ],
     "catenary_fe.results.guards": ["tests/results/test_guards.py"],
-    "catenary_fe.analysis.linear_start": ["tests/analysis/test_contact_forces.py"],
-    "catenary_fe.analysis.linear_forces": ["tests/analysis/test_contact_forces.py"],
-    "catenary_fe.analysis.nonlinear.forces": ["tests/analysis/test_contact_forces.py"],
+    "catenary_fe.analysis.linear_forces": [
+        f"{_CONTACT}::{name}"
+        for name in (
+            "test_a_link_pulls_along_itself",
+            "test_the_law_is_solved_exactly",
+            "test_linearised_steps",
+            "test_it_says_how_far_motions_went",
+            "test_contact_that_is_lost_and_found",
+            "test_contact_damping_follows_the_wire",
+        )
+    ],
+    "catenary_fe.analysis.nonlinear.forces": [
+        f"{_CONTACT}::{name}"
+        for name in (
+            "test_a_dropper_that_is_not_taut_lacks_stiffness",
+            "test_nonlinear_steps_in_the_plane",
+            "test_nonlinear_steps_in_space",
+        )
+    ],
 }
 COMPILED = ("linear_forces", "nonlinear.forces")  # changed source does not reach compiled code
 LONGEST = 3.0, 20.0  # times what the tests take, and seconds: a mutant that takes longer is caught
