@@ -76,8 +76,10 @@ def damped(slack, pantograph):
 
 @pytest.fixture(scope="module")
 def space(reference_layout, pantograph):
-    """Two wires, links, two strips that roll."""
-    shape = cf.find_form(two_spans(reference_layout.parent / "dc_3kv_twin.toml"))
+    """Two wires, links of 1.25 m, two strips that roll."""
+    line = two_spans(reference_layout.parent / "dc_3kv_twin.toml")
+    longer = [s.replace(steady_arm=s.steady_arm.replace(length=1.25)) for s in line.supports]
+    shape = cf.find_form(line.replace(supports=tuple(longer)))
     head = cf.Panhead(width=1.6, strips=2, strip_distance=0.4, spring_distance=0.9, roll_inertia=1.0)
     return Ride(shape, pantograph.replace(uplift_force=60.0, head=head), 52.0, 40)
 
