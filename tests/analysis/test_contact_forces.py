@@ -39,7 +39,9 @@ class Ride(NamedTuple):
 
     def exudyn(self):
         line = self.shape.catenary
-        trip = Trip(SPEED, np.array([self.start]), self.steps, TIGHT, wire_interval=0.01)
+        trip = Trip(
+            SPEED, np.array([self.start]), self.steps, TIGHT, wire_interval=0.01, energy_interval=0.01
+        )
         return drive(line, self.shape.mesh, self.shape.installation, self.pairs, trip)
 
     def nonlinear(self):
@@ -107,6 +109,9 @@ def assert_same(ours, theirs, force):
         assert mine == pytest.approx(other, abs=2e-6)
     for mine, other in zip(ours.wire_z, theirs.wire_z, strict=True):
         assert mine == pytest.approx(other, abs=5e-6)
+    for mine, other in ((ours.driven_work, theirs.driven_work), (ours.lost_work, theirs.lost_work)):
+        assert np.abs(other).max() > 5e-3  # [J]
+        assert mine == pytest.approx(other, abs=3e-3 * np.abs(other).max())
 
 
 def test_contact_damping_follows_the_wire(damped):
