@@ -15,7 +15,16 @@ import catenary_fe as cf
 from catenary_fe.analysis import linearised
 from catenary_fe.analysis.compiled import plain
 from catenary_fe.analysis.linear_arrays import Links, Scheme
-from catenary_fe.analysis.linear_forces import link_force, one_way, solve_one_way
+from catenary_fe.analysis.linear_forces import (
+    dropper_parts,
+    link_force,
+    one_way,
+    slacken,
+    solve_one_way,
+    swing,
+)
+from catenary_fe.analysis.linear_lanes import Lanes
+from catenary_fe.analysis.linear_records import Sizes
 from catenary_fe.analysis.linearised import Case, LinearisedCatenary
 from catenary_fe.analysis.nonlinear.forces import _lack
 from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
@@ -210,3 +219,57 @@ def test_a_dropper_that_is_not_taut_lacks_stiffness(spring, damper):
     )
     lack = scheme.b * k + scheme.g * d - rise / e
     assert plain(_lack)(scheme, k, d, spring, damper) == pytest.approx(lack, abs=1e-3)
+
+
+def entry(function):
+    """Python's way into a function that is compiled for other compiled ones alone."""
+    numba = pytest.importorskip("numba")
+
+    @numba.njit
+    def call(*arguments):
+        return function(*arguments)
+
+    return call
+
+
+@pytest.fixture
+def at_rest(space):
+    """A lane of a linearised run at rest, and what its forces work on."""
+    setup = LinearisedCatenary(space.shape)._setup
+    return setup, Lanes(setup, Sizes(pantographs=1, contacts=1, coordinates=1, steps=1, shapes=0), 1)
+
+
+@pytest.mark.parametrize(("y", "z"), [(0.004, 0.06), (-0.02, -0.05), (0.0, 0.1)])
+def test_a_link_that_swings_is_on_its_circle(at_rest, y, z):
+    setup, lanes = at_rest
+    links, wires, work, b = setup.line.links, lanes.wires, lanes.work, setup.scheme.b
+    wires.q[links.at[0], 0] = y, z
+    change = entry(swing)(setup.scheme, setup.line, wires, work, 0, 0)
+    y, z = wires.q[links.at[0], 0] + b * wires.x[links.at[0], 0]
+    law = plain(link_force)
+    (fy, fz, *_), (ry, rz, yy, yz, zz) = law(links, 0, y, z), law(links, 0, 0.0, 0.0)
+    beyond = np.array([fy - ry - yy * y - yz * z, fz - rz - yz * y - zz * z])
+    assert np.abs(beyond).max() > 5.0  # [N]
+    assert work.swing[0, 0] == pytest.approx(beyond, abs=2e-3)
+    assert change == pytest.approx(np.abs(work.swing[0, 0]).sum())
+    before = wires.x.copy()
+    assert entry(swing)(setup.scheme, setup.line, wires, work, 0, 0) == 0.0
+    assert np.array_equal(wires.x, before)
+
+
+@pytest.mark.parametrize(
+    ("spring", "damper"), [(50.0, 20.0), (50.0, -30.0), (50.0, 80.0), (50.0, -80.0), (-50.0, 20.0)]
+)
+def test_a_dropper_is_brought_to_its_law(at_rest, spring, damper):
+    setup, lanes = at_rest
+    line, wires, work, i = setup.line, lanes.wires, lanes.work, 3
+    part = slice(*line.rows.start[i : i + 2])
+    at, row = line.rows.column[part].astype(int), line.rows.value[part]
+    wires.q[at, 0] = row * (spring - line.tension[i]) / line.k[i] / (row @ row)
+    wires.v[at, 0] = row * damper / line.d[i] / (row @ row)
+    for _ in range(2):  # the second time from there
+        change = entry(slacken)(setup.scheme, line, wires, work, 0, i)
+        now = plain(dropper_parts)(setup.scheme, line, wires, 0, i)
+        assert sum(now) - work.slack[0, i] == pytest.approx(plain(one_way)(*now), abs=1e-9)
+    assert change == pytest.approx(0.0, abs=1e-9)
+    assert (work.slack[0, i] == 0) == (abs(damper) <= spring)

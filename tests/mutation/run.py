@@ -54,6 +54,8 @@ TARGETS = {  # module: tests that are quick and touch it
         for name in (
             "test_a_link_pulls_along_itself",
             "test_the_law_is_solved_exactly",
+            "test_a_link_that_swings_is_on_its_circle",
+            "test_a_dropper_is_brought_to_its_law",
             "test_linearised_steps",
             "test_it_says_how_far_motions_went",
             "test_contact_that_is_lost_and_found",
