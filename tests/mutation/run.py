@@ -62,7 +62,8 @@ TARGETS = {  # module: tests that are quick and touch it
             "test_contact_damping_follows_the_wire",
         )
     ],
-    "catenary_fe.analysis.nonlinear.forces": [
+    "catenary_fe.analysis.nonlinear.forces": ["tests/analysis/test_window_of_a_force.py"]
+    + [
         f"{_CONTACT}::{name}"
         for name in (
             "test_a_dropper_that_is_not_taut_lacks_stiffness",
