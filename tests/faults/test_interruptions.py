@@ -32,7 +32,7 @@ SWEEP = [
 )
 def test_a_sweep_that_is_stopped_goes_on(call, start, layout, tmp_path, number, code):
     words = ["sweep", layout, *SWEEP, "-o", tmp_path, "--speed-kmh"]
-    process = start(*words, "150:300:10")
+    process = start(*words, "150:300:1")  # long enough to be hit on a busy machine, too
     wait_until(lambda: list(tmp_path.glob("cases/[!.]*.json")), process)
     if number == signal.SIGINT:
         os.killpg(process.pid, number)  # as Ctrl-C does
@@ -44,7 +44,7 @@ def test_a_sweep_that_is_stopped_goes_on(call, start, layout, tmp_path, number, 
         f"stopped: finished cases are kept in {tmp_path}; start again to go on", "", "interrupted", "",
     ]  # fmt: skip
     kept = content(tmp_path)
-    assert 1 <= len(kept) < 16
+    assert 1 <= len(kept) < 151
     assert all(name.endswith(".json") for name in kept)
     assert call(*words, 150, 160, 300)[0] == 0
     with (tmp_path / "sweep.csv").open() as file:
