@@ -28,7 +28,7 @@ DEEPEST = 0.010  # [m] of the head in the wire
 STEPS_A_PERIOD = 20  # the trapezoidal rule then lengthens a period by (2π/20)²/12, 0.8 %
 STEPS_AN_ELEMENT = 2  # below it, whole elements are jumped over
 IMBALANCE = 0.005  # of the uplift
-UNBALANCED = 0.02  # of the work done; of sound runs 0.4 % at most is missing, the integrator's own damping
+UNBALANCED = 0.02  # of the work done; of sound runs 0.5 % at most is missing, the integrator's own damping
 STAGES_UNBALANCED = 0.003  # of the contact force's work; 0.01 % in sound runs
 DRIFT = 0.03  # of the tension, which moves the wave speed by 1.5 %; pantographs alone change it by 1 %
 TONE = 0.03  # of the mean force
@@ -202,7 +202,7 @@ def _energy_balance(run: Run) -> Iterator[Check]:
     """Work of uplift forces and moving bases, less what dampers take, is stored and kinetic energy.
 
     Of the whole system, where the run recorded it: all nonlinear runs do. What is missing of a sound run went
-    into the integrator's own damping: up to 0.2 % at 1 ms, 0.4 % at 2 ms.
+    into the integrator's own damping: up to 0.2 % at 1 ms, 0.5 % at 2 ms.
     """
     if "energy" not in run.data:
         return

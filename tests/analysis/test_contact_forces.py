@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from kernels import entry
 
 import catenary_fe as cf
 from catenary_fe.analysis import linearised
@@ -219,17 +220,6 @@ def test_a_dropper_that_is_not_taut_lacks_stiffness(spring, damper):
     )
     lack = scheme.b * k + scheme.g * d - rise / e
     assert plain(_lack)(scheme, k, d, spring, damper) == pytest.approx(lack, abs=1e-3)
-
-
-def entry(function):
-    """Python's way into a function that is compiled for other compiled ones alone."""
-    numba = pytest.importorskip("numba")
-
-    @numba.njit
-    def call(*arguments):
-        return function(*arguments)
-
-    return call
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from kernels import entry
 
 from catenary_fe.analysis.linear_setup import make_scheme
 from catenary_fe.analysis.nonlinear.forces import REACH, ROOM, give_at, soften, solve
@@ -9,18 +10,6 @@ from catenary_fe.analysis.nonlinear.setup import make_factor, make_system
 from catenary_fe.analysis.nonlinear.state import _slack
 from catenary_fe.fe.nonlinear_model import nonlinear_model
 from catenary_fe.fe.solver_settings import TimeSettings
-
-numba = pytest.importorskip("numba")
-
-
-def entry(function):
-    """Python's way into a function that is compiled for other compiled ones alone."""
-
-    @numba.njit
-    def call(*arguments):
-        return function(*arguments)
-
-    return call
 
 
 @pytest.fixture(scope="module")
