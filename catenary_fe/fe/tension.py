@@ -108,4 +108,4 @@ class TensionRecord:
     @property
     def changes(self) -> Floats:
         """Shape (wires, readings)."""
-        return np.array(self._changes[: len(self._times)]).T
+        return np.array(self._changes).T

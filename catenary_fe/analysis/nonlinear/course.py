@@ -31,16 +31,15 @@ class Course:
 
     def read(self, scheme: Scheme, displacements: NDArray[np.float64]) -> None:
         """Take tensions and energy where the run is now; displacements of all coordinates."""
-        self.energy.read(self.state, scheme)
+        self.energy.read(self.state, scheme)  # first: what has no time yet is cut where a run is interrupted
         self.tension.read(scheme.h * int(self.state.heads.step[0]), displacements)
 
     def joined(self, journey: Journey) -> Journey:
         """The journey with what was read on the way."""
-        times = self.tension.times  # an interrupt may have come between the two readings
         return replace(
             self.tension.joined(journey),
-            energy=self.energy.values[: times.size],
-            energy_times=times,
+            energy=self.energy.values,
+            energy_times=self.tension.times,
             driven_work=self.state.account.history[0],
             lost_work=self.state.account.history[1],
         )
