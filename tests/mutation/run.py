@@ -48,7 +48,10 @@ TARGETS = {  # module: tests that are quick and touch it
         _CONTACT,
         "tests/analysis/test_elastic_pantograph.py",
     ],
-    "catenary_fe.results.guards": ["tests/results/test_guards.py"],
+    "catenary_fe.results.guards": [
+        "tests/results/test_pantograph_balances.py",
+        "tests/results/test_guard_values.py",
+    ],
     "catenary_fe.analysis.linear_forces": [
         f"{_CONTACT}::{name}"
         for name in (
