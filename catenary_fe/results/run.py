@@ -124,20 +124,24 @@ class Run:
         supports = np.asarray(self.data["support_position"].values)
         x = np.asarray(self.data["position"].values[pantograph])
         inside = np.zeros(x.size, dtype=bool)
-        for number in spans or self.evaluated_spans:
-            if not 1 <= number < supports.size:
-                raise InputError(f"span {number}: the line has spans 1 to {supports.size - 1}")
+        numbers = self._numbers(spans)
+        for number in numbers:
             inside |= (x >= supports[number - 1]) & (x <= supports[number])
         if not inside.any():
+            raise InputError(f"pantograph {pantograph + 1} was never inside spans {list(numbers)}")
+        if not self._passed(pantograph, numbers):
             raise InputError(
-                f"pantograph {pantograph + 1} was never inside spans {list(spans or self.evaluated_spans)}"
-            )
-        if not self._passed(pantograph, spans or self.evaluated_spans):
-            raise InputError(
-                f"spans {list(spans or self.evaluated_spans)}: the run is partial and ended at {x[-1]:.1f} m,"
+                f"spans {list(numbers)}: the run is partial and ended at {x[-1]:.1f} m,"
                 f" where pantograph {pantograph + 1} had not passed them: there are no statistics"
             )
         return inside
+
+    def _numbers(self, spans: Sequence[int] | None) -> Sequence[int]:
+        last = self.data.sizes["support"] - 1
+        for number in spans or ():
+            if not 1 <= number <= last:
+                raise InputError(f"span {number}: the line has spans 1 to {last}")
+        return spans or self.evaluated_spans
 
     def contact_force_statistics(
         self, spans: Sequence[int] | None = None, filter: FilterKind = "causal"
@@ -175,11 +179,12 @@ class Run:
     def largest_support_uplift(self, spans: Sequence[int] | None = None) -> float:
         """[m] largest uplift of the contact wire at the supports of the given spans.
 
-        Raises InputError where the run is partial and a pantograph has not passed them.
+        Raises InputError for spans that the line does not have, and where the run is partial and a pantograph
+        has not passed them.
         """
+        numbers = self._numbers(spans)
         for i in range(self.data.sizes["pantograph"] if self.partial else 0):
-            self.window(i, spans)
-        numbers = spans or self.evaluated_spans
+            self.window(i, numbers)
         supports = sorted({s for n in numbers for s in (n - 1, n)})
         return float(self.data["support_uplift"].values[supports].max())
 
