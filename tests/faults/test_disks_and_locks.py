@@ -3,7 +3,6 @@
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 
@@ -147,14 +146,3 @@ def test_two_sweeps_into_one_folder(call, layout, tmp_path):
         code, _, err = call(*words)
     assert code == 3
     assert f"cases: process {os.getpid()} is writing there" in err
-
-
-def test_the_lock_of_another_machine_is_named(tmp_path):
-    with files.locked(tmp_path):
-        (tmp_path / ".lock").write_text("17 elsewhere\n")
-        with pytest.raises(cf.InputError, match="process 17 on elsewhere is writing"), files.locked(tmp_path):
-            pass
-    (tmp_path / ".lock").write_text(f"17 {socket.gethostname()}\n")  # left behind, held by nobody
-    with files.locked(tmp_path):
-        pass
-    assert not list(tmp_path.iterdir())

@@ -35,11 +35,25 @@ _STATICS = [
     "tests/space/test_statics_in_space.py",
     "tests/space/test_stitch_and_twin_wires.py",
 ]
+_RUNS = ["tests/results/test_run_values.py"]
+_SHAPES = ["tests/results/test_shapes.py"]
+_FILES = ["tests/results/test_files.py"]
+_TABLES = ["tests/results/test_comparison.py"]
 _CONTACT = "tests/analysis/test_contact_forces.py"
 TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.statistics": ["tests/results/test_statistics.py"],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
     "catenary_fe.results.criteria": ["tests/results/test_criteria.py"],
+    "catenary_fe.results.run": _RUNS,
+    "catenary_fe.results.modes": _SHAPES,
+    "catenary_fe.results.modal_run": _SHAPES,
+    "catenary_fe.results.wires": _SHAPES,
+    "catenary_fe.results.elasticity": _SHAPES,
+    "catenary_fe.results.comparison": _TABLES,
+    "catenary_fe.results.export": _TABLES,
+    "catenary_fe.results.files": _FILES,
+    "catenary_fe.results.checksum": _FILES,
+    "catenary_fe.results.partial": _FILES,
     "catenary_fe.equilibrium.form": _STATICS,
     "catenary_fe.equilibrium.cut_wires": _STATICS,
     "catenary_fe.equilibrium.form_checks": _STATICS,

@@ -97,18 +97,17 @@ def energies(energy, driven, lost):
 
 
 def test_energy_balance():
-    """Driven 4 J, lost 3 J, stored 0.9 J: 0.1 J are missing of what contacts and uplift did."""
-    recorded = energies([7.0, 7.2, 7.9], [0, -1.0, 4.0], [0, -1.2, 3.0])
-    assert check(made_run(extra=recorded), "energy balance").value == pytest.approx(100 * 0.1 / 4)
-    assert check(made_run(extra=recorded), "energy balance").bound_text == "at most 2 %"
-    run = made_run(None, ELASTIC, extra=recorded)
-    assert check(run, "energy balance").value == pytest.approx(100 * 0.1 / 4)
+    """Driven 0.4 J, lost 0.3 J, stored 0.09 J: 0.01 J are missing of what contacts and uplift did."""
+    recorded = energies([7.0, 7.02, 7.09], [0, -0.1, 0.4], [0, -0.12, 0.3])
+    for run in (made_run(extra=recorded), made_run(None, ELASTIC, extra=recorded)):
+        assert check(run, "energy balance").value == pytest.approx(100 * 0.01 / 0.4)
+        assert check(run, "energy balance").bound_text == "at most 2 %"
 
 
 def test_uplift_forces_are_among_the_work_of_the_energy_balance():
-    """The lowest masses of two pantographs leave their place by 20 and 10 mm: 100 and 200 N work 4 J."""
+    """The lowest masses of two pantographs leave their places by 20 and 10 mm: 100 and 200 N work 4 J."""
     heights = np.full((2, 2, 2001), HEIGHT)
-    heights[0, 1, 5], heights[1, 1, 7], heights[1, 0, 9] = HEIGHT - 0.02, HEIGHT + 0.01, HEIGHT + 1
+    heights[0, 1, 0], heights[1, 1, 7], heights[1, 0, 9] = HEIGHT - 0.02, HEIGHT + 0.01, HEIGHT + 1
     two = [(8.0, 4000.0, 100.0), (15.0, 50.0, 90.0)]
     run = made_run(
         None, made_pantograph(*two), made_pantograph(*two), start=(5.0, 5.0), mass_height=heights,
