@@ -254,6 +254,8 @@ def write_run(
     folder.picture("contact_force.png", views.plot_contact_force(result))
     folder.picture("support_uplift.png", views.plot_support_uplift(result))
     folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
+    if result.has_energy:
+        folder.picture("energy.png", views.plot_energy(result))
     if rows:
         folder.picture(
             "criteria.png", views.plot_criteria(rows, title=_heading(shape.catenary.name, summary))

@@ -188,6 +188,22 @@ class Run:
         supports = sorted({s for n in numbers for s in (n - 1, n)})
         return float(self.data["support_uplift"].values[supports].max())
 
+    @property
+    def has_energy(self) -> bool:
+        """Whether the run recorded its energy, as all nonlinear ones do."""
+        return "energy" in self.data
+
+    @property
+    def missing_energy(self) -> Floats:
+        """[J], shape (energy_times,): stored and kinetic energy, less what was done, plus what was lost.
+
+        Raises InputError where the run recorded no energy.
+        """
+        if not self.has_energy:
+            raise InputError("the run recorded no energy; run again with the method 'nonlinear'")
+        energy, driven, lost = (self.data[n].values for n in ("energy", "driven_work", "lost_work"))
+        return np.asarray(energy - energy[0] - driven + lost)
+
     def summary(self, filter: FilterKind = "causal") -> dict[str, Any]:
         """Key figures in display units, ready for JSON."""
         simulated = float(self.time[-1])
@@ -235,6 +251,12 @@ class Run:
         from catenary_fe.views import plot_dropper_forces
 
         return plot_dropper_forces(self, ax=ax)
+
+    def plot_energy(self, ax: Axes | None = None) -> Axes:
+        """Where the energy comes from and goes to. See :func:`catenary_fe.views.plot_energy`."""
+        from catenary_fe.views import plot_energy
+
+        return plot_energy(self, ax=ax)
 
     def plot_waves(self, ax: Axes | None = None) -> Axes:
         """Waves on the contact wire over place and time. See :func:`catenary_fe.views.plot_run_waves`."""

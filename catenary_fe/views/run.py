@@ -1,4 +1,4 @@
-"""Pictures of a run: contact force, uplift at supports, dropper forces."""
+"""Pictures of a run: contact force, uplift at supports, dropper forces, energy."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from catenary_fe.results import Run
 from catenary_fe.views.style import (
     DROPPER,
     PANTOGRAPHS,
+    SLACK,
     finish,
     headroom,
     mark_supports,
@@ -100,3 +101,24 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     return note_failed(
         finish(ax, "position along the line (m)", "dropper force (N)", title), run.failed_checks
     )
+
+
+def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
+    """Work on the whole system, what its dampers took, what it has stored, and what is missing of that.
+
+    Raises InputError where the run recorded no energy.
+    """
+    ax = new_axes(ax)
+    missing, time = run.missing_energy, run.data["energy_time"].values
+    for name, label, colour in (
+        ("driven_work", "done by the contacts", PANTOGRAPHS[0]),
+        ("lost_work", "lost in dampers", PANTOGRAPHS[1]),
+        ("energy", "kinetic and stored, since the start", PANTOGRAPHS[2]),
+    ):
+        ax.plot(time, run.data[name].values, color=colour, linewidth=1.2, label=label)
+    ax.plot(time, missing, color=SLACK, linewidth=1.2, linestyle="--", label="missing")
+    ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
+    ax.margins(x=0.01)
+    headroom(ax, 0.18)
+    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: energy ({np.abs(missing).max():.2g} J missing)"
+    return note_failed(finish(ax, "time (s)", "energy (J)", title), run.failed_checks)

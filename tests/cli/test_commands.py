@@ -97,7 +97,8 @@ def test_run(capsys, layout, tmp_path):
     assert summary["pantographs"][0]["name"] == "EN 50318:2002"
     assert {p.name for p in out_dir.iterdir()} == {
         "run.nc", "summary.json", "dropper_schedule.csv", "layout.png", "static_shape.png",
-        "contact_force.png", "support_uplift.png", "dropper_forces.png", "layout.toml", "inputs.json",
+        "contact_force.png", "support_uplift.png", "dropper_forces.png", "energy.png", "layout.toml",
+        "inputs.json",
     }  # fmt: skip
     written = json.loads((out_dir / "summary.json").read_text())
     assert written == summary

@@ -35,8 +35,8 @@ _STATICS = [
     "tests/space/test_statics_in_space.py",
     "tests/space/test_stitch_and_twin_wires.py",
 ]
-_RUNS = ["tests/results/test_run_values.py"]
 _SHAPES = ["tests/results/test_shapes.py"]
+_RUNS = ["tests/results/test_run_values.py", *_SHAPES]
 _FILES = ["tests/results/test_files.py"]
 _TABLES = ["tests/results/test_comparison.py"]
 _CONTACT = "tests/analysis/test_contact_forces.py"

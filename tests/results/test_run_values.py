@@ -170,6 +170,16 @@ def test_failed_checks_are_warned_of():
     assert run.summary()["warnings"] == list(run.warnings)
 
 
+def test_energy_that_is_missing():
+    energies = {"energy": [7.0, 7.2, 7.9], "driven_work": [0, 1.0, 4.0], "lost_work": [0, 1.0, 3.5]}
+    run = made_run(extra={name: ("energy_time", np.array(v)) for name, v in energies.items()})
+    assert run.has_energy
+    assert run.missing_energy == pytest.approx([0.0, 0.2, 0.4])
+    assert not made_run().has_energy
+    with pytest.raises(cf.InputError, match="recorded no energy; run again with the method 'nonlinear'"):
+        _ = made_run().missing_energy
+
+
 def test_saved_whole_and_with_its_checksum(tmp_path):
     run = made_run(None, *TWO, start=(5.0, 4.9), times=1951, partial=partial())
     path = run.save(str(tmp_path / "run.nc"))

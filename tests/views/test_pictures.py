@@ -19,13 +19,14 @@ def drawings(short, short_shape, short_run):
         "contact force": short_run.plot_contact_force(),
         "support uplift": short_run.plot_support_uplift(),
         "dropper forces": short_run.plot_dropper_forces(),
+        "energy": short_run.plot_energy(),
     }
 
 
 def test_axes_have_labels_with_units(drawings):
     for name, ax in drawings.items():
         for label in (ax.get_xlabel(), ax.get_ylabel()):
-            assert label.endswith(("(m)", "(mm)", "(N)", "(s)", "(mm/N)")), (name, label)
+            assert label.endswith(("(m)", "(mm)", "(N)", "(s)", "(mm/N)", "(J)")), (name, label)
         assert ax.get_title(loc="left")
 
 
@@ -81,3 +82,18 @@ def test_the_rays_of_a_run_are_waves(short_run):
     assert (x[2] - x[1]) / (t[2] - t[1]) == pytest.approx(-c)
     assert x[2] == pytest.approx(np.interp(t[2], short_run.time, short_run.data["position"].values[0]))
     assert (x[2] - x[0]) / (t[2] - t[0]) == pytest.approx(v)
+
+
+def test_the_energy_picture_shows_what_is_missing(drawings, short_run):
+    curves = {c.get_label(): c.get_ydata() for c in drawings["energy"].lines}
+    stored = curves["kinetic and stored, since the start"]
+    lost, done = curves["lost in dampers"], curves["done by the contacts"]
+    assert curves["missing"] == pytest.approx(stored - stored[0] + lost - done, abs=1e-12)
+    assert 0 < np.abs(curves["missing"]).max() < 0.2
+
+
+def test_a_run_without_energy_has_no_picture_of_it(short_shape, pantograph):
+    run = cf.simulate(short_shape, [pantograph], speed=70.0, method="linearised")
+    assert not run.has_energy
+    with pytest.raises(cf.InputError, match="recorded no energy; run again with the method 'nonlinear'"):
+        run.plot_energy()

@@ -92,6 +92,8 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
         "shape": svg_address(layout.plot_static_shape(shape, spans=run.evaluated_spans[:2])),
     }
+    if run.has_energy:
+        pictures["energy"] = svg_address(run_pictures.plot_energy(run))
     if run.reached:
         pictures["spectrum"] = svg_address(plot_force_spectrum(run))
     if shape.catenary.is_spatial:
