@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import tan
 
@@ -78,7 +79,7 @@ class CutWires:
         weight = self.clamp_weights("contact_wire_clamp_mass") + forces.half_weight
         pull[droppers] = [statics.reactions[int(n), up] for n in nodes] + weight[droppers]
         found = DropperForces(pull, forces.lean, forces.half_weight)
-        return straightened(catenary.contact_wire, mesh.x, statics, self.pulls[number]), found
+        return straightened(catenary.contact_wire, mesh.x, statics, self.pulls[number], held), found
 
     def _register(
         self, number: int, held: dict[At, float], loads: dict[At, float]
@@ -139,7 +140,7 @@ class CutWires:
         for i, node in enumerate(supports.tolist()):
             self.support_forces[i] = [statics.reactions[node, axis] for axis in range(1, self.axes)]
         pulls = self.pulls[mesh.contact_wires]
-        return straightened(catenary.messenger_wire, mesh.messenger.x, statics, pulls)
+        return straightened(catenary.messenger_wire, mesh.messenger.x, statics, pulls, held)
 
     def hang_stitch_wire(
         self, number: int, line: WireLine, ends: Floats, forces: DropperForces
@@ -168,7 +169,7 @@ class CutWires:
             for axis in range(1, self.axes):
                 pulls[clamp, axis] = -statics.reactions[node, axis]
             pulls[clamp, self.up] -= GRAVITY * stitch.clamp_mass
-        return straightened(stitch, mesh.x, statics, self.pulls[number]), pulls
+        return straightened(stitch, mesh.x, statics, self.pulls[number], held), pulls
 
     def _hangers(self, wire: int, forces: DropperForces) -> dict[At, float]:
         """Loads of the droppers that hang on a wire."""
@@ -183,8 +184,12 @@ class CutWires:
         return loads
 
 
-def straightened(wire: Wire, x: Floats, statics: WireStatics, pulls: Floats) -> WireLine:
+def straightened(
+    wire: Wire, x: Floats, statics: WireStatics, pulls: Floats, held: Mapping[At, float]
+) -> WireLine:
     """The line that was found, with the nodes back at their stations: clamps sit where they are wanted.
+
+    held : [m] coordinates that stay, though their node slid along the track, by node and axis
 
     Raises SolverError where the wire hangs so low that it folds back.
     """
@@ -198,4 +203,7 @@ def straightened(wire: Wire, x: Floats, statics: WireStatics, pulls: Floats) -> 
             f" {x[int(forward.argmin())]:.1f} m along the line; look for too little tension"
         )
     curve = CubicHermiteSpline(found[:, 0], found[:, 1:], statics.inclinations, extrapolate=True)
-    return WireLine.through(wire, np.column_stack([x, curve(x)]), curve(x, 1), pulls)
+    points = np.column_stack([x, curve(x)])
+    for at, coordinate in held.items():
+        points[at] = coordinate
+    return WireLine.through(wire, points, curve(x, 1), pulls)

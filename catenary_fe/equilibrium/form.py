@@ -20,7 +20,7 @@ from catenary_fe.equilibrium.guess import guess_lines
 from catenary_fe.equilibrium.shape import HangingWire, Shape
 from catenary_fe.fe.mesh import Mesh, MeshSettings, make_mesh
 from catenary_fe.fe.model import Installation, Model, build_model, wire_kinds
-from catenary_fe.fe.single_wire import WireStatics
+from catenary_fe.fe.single_wire import At, WireStatics
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.fe.wire import WireLine
 from catenary_fe.system import GRAVITY, Catenary, SolverError
@@ -147,21 +147,23 @@ def _settle(model: Model, installation: Installation, pulls: Sequence[Floats]) -
     statics = [
         WireStatics.from_coordinates(q) for q in model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
     ]
-    lines = [
-        straightened(kind, wire.x, found, pull)
-        for kind, wire, found, pull in zip(
-            wire_kinds(catenary, mesh), mesh.wires, statics, pulls, strict=True
-        )
-    ]
+    held: list[dict[At, float]] = [{} for _ in mesh.wires]
     arm_forces = np.zeros_like(installation.arm_forces)
     support_forces = np.zeros_like(installation.support_forces)
-    messenger = mesh.contact_wires
     for (wire, i, axis), constraint in model.held.arms.items():
+        node = int(mesh.wires[wire].supports[i])
+        held[wire][node, axis] = installation.lines[wire].points[node, axis]
         arm_forces[wire, i, axis - 1] = model.held_force(constraint)
-        _stay(lines[wire], installation.lines[wire], int(mesh.wires[wire].supports[i]), axis)
     for (i, axis), constraint in model.held.supports.items():
+        wire, node = mesh.contact_wires, int(mesh.messenger.supports[i])
+        held[wire][node, axis] = installation.lines[wire].points[node, axis]
         support_forces[i, axis - 1] = model.held_force(constraint)
-        _stay(lines[messenger], installation.lines[messenger], int(mesh.messenger.supports[i]), axis)
+    lines = tuple(
+        straightened(*one)
+        for one in zip(
+            wire_kinds(catenary, mesh), (w.x for w in mesh.wires), statics, pulls, held, strict=True
+        )
+    )
     release(model.mbs)
     arm_forces[:, [0, -1]] = 0.0  # the wires' anchors
     for i, support in list(enumerate(catenary.supports))[1:-1]:
@@ -175,12 +177,7 @@ def _settle(model: Model, installation: Installation, pulls: Sequence[Floats]) -
                 if arm.stiffness is not None
                 else abs(arm_forces[wire, i, 0]) * tan(arm.inclination or 0.0)
             )
-    return Installation(tuple(lines), installation.dropper_lengths, arm_forces, support_forces)
-
-
-def _stay(line: WireLine, before: WireLine, node: int, axis: int) -> None:
-    """A held node that slides along the track to its station keeps its height."""
-    line.points[node, axis] = before.points[node, axis]
+    return Installation(lines, installation.dropper_lengths, arm_forces, support_forces)
 
 
 def _verified(catenary: Catenary, settings: MeshSettings, nodes: Mesh, installation: Installation) -> Shape:

@@ -17,6 +17,7 @@ from catenary_fe.fe.overlay import Overlay, add_overlay
 from catenary_fe.fe.registration import Held, add_arms, add_supports
 from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
+    ALONG,
     WireItems,
     WireLine,
     add_ground_coordinate,
@@ -149,7 +150,8 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie.
 
     held : instead of springs, constraints hold the messenger wire at its supports and the contact wire at
-        the arms that shall give it its design height: their forces are what an installation sets.
+        the arms that shall give it its design height: their forces are what an installation sets. Stitch
+        wires are pulled at one end, as by a winch.
     """
     mbs = new_system()
     kinds = wire_kinds(catenary, mesh)
@@ -158,7 +160,7 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     for wire, items in zip(kinds[: mesh.first_stitch], wires, strict=False):
         anchor_and_tension(mbs, items, ground, wire)
     overlay = add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
-    _clamp_stitch_wires(mbs, mesh, wires)
+    _clamp_stitch_wires(mbs, mesh, wires, held)
     droppers = _add_droppers(mbs, catenary, mesh, wires, installation.dropper_lengths)
     contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
     arms = add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces, held)
@@ -217,16 +219,26 @@ def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Float
     return masses, hanging
 
 
-def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems]) -> None:
+def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems], held: bool) -> None:
+    """Both ends move with the messenger wire.
+
+    held : the last end slides along the track under the wire's tension, by which its length is found; ends
+        that lie a little apart come together
+    """
     messenger = wires[mesh.contact_wires]
     for stitch, ends in zip(wires[mesh.first_stitch :], mesh.stitch_ends, strict=True):
-        for node, on_messenger in zip((0, len(stitch.nodes) - 1), ends, strict=True):
+        last = len(stitch.nodes) - 1
+        for node, clamp in zip((0, last), ends.tolist(), strict=True):
+            apart = messenger.line.points[clamp] - stitch.line.points[node] if held else np.zeros(3)
             for axis in range(stitch.line.axes):
-                markers = [
-                    messenger.coordinate_marker(mbs, int(on_messenger), axis),
-                    stitch.coordinate_marker(mbs, node, axis),
-                ]
-                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
+                above = messenger.coordinate_marker(mbs, clamp, axis)
+                below = stitch.coordinate_marker(mbs, node, axis)
+                if held and (node, axis) == (last, ALONG):
+                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=above, load=-stitch.kind.tension))
+                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=below, load=stitch.kind.tension))
+                    continue
+                markers, offset = [above, below], float(apart[axis])
+                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset))
 
 
 def _add_droppers(

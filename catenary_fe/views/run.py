@@ -120,5 +120,6 @@ def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
     ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
     ax.margins(x=0.01)
     headroom(ax, 0.18)
-    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: energy ({np.abs(missing).max():.2g} J missing)"
+    most = np.abs(missing).max()
+    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: energy ({most:.2g} J missing)"
     return note_failed(finish(ax, "time (s)", "energy (J)", title), run.failed_checks)

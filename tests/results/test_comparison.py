@@ -19,7 +19,7 @@ def differences(*runs):
 
 
 def test_key_figures_of_each_pantograph_of_each_run():
-    forces, uplift = np.full((24, 2001), 50.0), np.zeros((7, 2001))
+    forces, uplift = np.full((24, 2001), 0.5), np.zeros((7, 2001))
     forces[2, 5], forces[4, 6], uplift[3, 9] = 0.0, -1.0, 0.0625
     swinging = 100 + 10 * np.sin(2 * np.pi * 3 * 2e-3 * np.arange(2001))
     first = made_run(dropper_force=forces, support_uplift=uplift, contact_force=swinging)

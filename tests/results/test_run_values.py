@@ -228,8 +228,11 @@ def test_a_file_without_its_checksum_is_not_trusted(tmp_path):
 
 
 def test_pictures_of_a_run():
-    run = made_run()
-    for plot in (run.plot_contact_force, run.plot_support_uplift, run.plot_dropper_forces):
+    energies = dict.fromkeys(
+        ["energy", "driven_work", "lost_work", "energy_time"], ("energy_time", np.arange(3.0))
+    )
+    run = made_run(extra=energies)
+    for plot in (run.plot_contact_force, run.plot_support_uplift, run.plot_dropper_forces, run.plot_energy):
         axes = plot()
         assert axes.get_ylabel()
         assert plot(ax=axes) is axes

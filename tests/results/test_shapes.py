@@ -54,11 +54,18 @@ def test_two_times_are_enough():
     assert stored(TIMES[:2]).wires()[0].velocity.shape == (2, 31)
 
 
+def test_a_picture_of_waves():
+    axes = stored(np.linspace(0, 4, 41)).plot_waves()
+    assert axes.get_xlabel().endswith("(m)")
+    assert stored(np.linspace(0, 4, 41)).plot_waves(ax=axes) is axes
+
+
 def test_elasticity():
     curve = Elasticity(np.array([0.0, 1.0, 2.0]), np.array([0.03, 0.05, 0.04]), 100.0, np.array([0.0]))
     assert curve.values == pytest.approx([3e-4, 5e-4, 4e-4])
     assert curve.non_uniformity == pytest.approx(2 / 8)
     axes = curve.plot()
+    assert axes.get_ylabel().endswith("(mm/N)")
     assert curve.plot(ax=axes) is axes
 
 
@@ -78,11 +85,11 @@ def bay(half_waves, number):
     return tuple(np.where(inside, values, 0.0) for values in sine(half_waves, 10.0))
 
 
-def modes(contact, messenger=None, along=None, line=LINE, frequencies=None):
+def modes(contact, messenger=None, along=None, line=LINE, frequencies=None, scale=0.01):
     """Modes with given shapes of the contact wire, each (values, slopes), and of the messenger wire."""
     n = len(contact)
     wires = [
-        WireShapes(NODES, np.array([s[0] for s in shapes]), np.array([s[1] for s in shapes]))
+        WireShapes(NODES, np.array([scale * s[0] for s in shapes]), np.array([scale * s[1] for s in shapes]))
         for shapes in (contact, messenger or contact)
     ]
     frequencies = np.arange(1.0, n + 1) if frequencies is None else np.asarray(frequencies)
@@ -127,7 +134,7 @@ def mixed(first, second, share):
     return tuple(np.sqrt(1 - share) * a + np.sqrt(share) * b for a, b in zip(first, second, strict=True))
 
 
-@pytest.mark.parametrize(("share", "kind"), [(0.45, "whole line"), (0.55, "bays")])
+@pytest.mark.parametrize(("share", "kind"), [(0.48, "whole line"), (0.52, "bays")])
 def test_what_has_more_energy_names_the_mode(share, kind):
     assert modes([mixed(sine(1), sine(2, 10.0), share)]).kind(0).kind == kind
 
@@ -180,6 +187,27 @@ def test_a_contact_wire_without_an_arm_swings_across_the_support():
     assert modes(*shapes[::-1], line=free).kind(0).kind == "whole line"
 
 
+@pytest.mark.parametrize(("a", "b"), [(0.0, 40.0), (190.0, 200.0)])
+def test_the_first_and_the_last_bay_end_at_the_line_s_ends(a, b):
+    inside = (a <= NODES) & (b >= NODES)
+    shape = np.where(inside, np.sin(2 * np.pi * (NODES - a) / (b - a)), 0.0), 0 * NODES
+    line = made_line((50.0,) * 4, dropper_every=40.0)
+    assert str(modes([shape], [(0 * NODES, 0 * NODES)], line=line).kind(0)) == "bays in shape 2"
+
+
+@pytest.mark.parametrize(("share", "kind"), [(0.85, "bays"), (1.15, "whole line")])
+def test_long_bays_count_by_their_length(share, kind):
+    """A bay of 40 m swings, chords stand over 100 m: at a share of 1 they have as much energy."""
+    line = made_line((50.0,) * 4, dropper_every=40.0)
+    swing = np.where(NODES <= 40, np.sin(np.pi * NODES / 40), 0.0)
+    # chords from 0 to 1 and back over 40 + 10 + 40 + 10 m, a third of the length times the square
+    chords = np.interp(NODES, [50, 90, 100, 140, 150], [0, 1, 0, 1, 0])
+    arms = (cf.Support(steady_arm=cf.SteadyArm(stiffness=100.0)),) * 5
+    shape = swing + np.sqrt(share * (40 / 2) / (100 / 3)) * chords, 0 * NODES
+    found = modes([shape], [(0 * NODES, 0 * NODES)], line=line.replace(supports=arms)).kind(0)
+    assert found.kind == kind
+
+
 def test_modes_up_to_a_frequency():
     whole = modes([sine(1), sine(2), sine(3), sine(4)], along=[0.1, 0.2, 0.3, 0.4])
     some = whole.below(3.0)  # itself too
@@ -196,7 +224,7 @@ def test_modes_up_to_a_frequency():
 
 
 def test_compliance_is_the_sum_of_all_modes():
-    found = modes([sine(1), sine(2)], frequencies=[0.5, 0.8]).compliance([50.0, 100.0])
+    found = modes([sine(1), sine(2)], frequencies=[0.5, 0.8], scale=1.0).compliance([50.0, 100.0])
     first, second = 1 / np.pi**2, 1 / (1.6 * np.pi) ** 2
     assert found == pytest.approx([first / 2 + second, first])
 
@@ -222,13 +250,15 @@ def test_modes_are_numbered_from_0(number):
 
 def test_a_picture_of_a_mode():
     axes = modes([sine(1)]).plot(0)
+    assert axes.get_xlabel().endswith("(m)")
     assert modes([sine(1)]).plot(0, ax=axes) is axes
 
 
 def test_a_modal_run_is_a_sum_of_shapes():
     time = np.linspace(0, 1, 5)
     run = ModalRun(
-        modes=modes([sine(1), sine(2)]), time=time, position=50 * time, contact_force=100 + 3 * time,
+        modes=modes([sine(1), sine(2)], scale=1.0),
+        time=time, position=50 * time, contact_force=100 + 3 * time,
         wire_height=HEIGHT + time, mass_height=np.empty((0, 5)),
         coordinates=np.column_stack([time, 2 * time]),
     )  # fmt: skip
