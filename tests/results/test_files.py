@@ -171,6 +171,9 @@ def test_a_checksum_leaves_out_itself_and_how_values_are_stored():
     same["a"] = (("x", "y"), np.asfortranarray(data["a"].values.astype(">f8")), {"units": "m"})
     assert checksum(same) == checksum(data)
     assert checksum(data.assign_attrs(count=np.int32(3))) == checksum(data)
+    turned = data.copy()
+    turned.attrs = dict(reversed(data.attrs.items()))
+    assert checksum(turned) == checksum(data)
 
 
 def test_a_checksum_is_the_same_after_reading(tmp_path):
