@@ -91,6 +91,43 @@ def simulate(
     the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
     the mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
     """
+    time = time or TimeSettings()
+    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
+    _check_options(pantographs, speed, method, energy, time, store_wire)
+    if checkpoint is not None and not compiled:
+        raise InputError(
+            f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
+        )
+    plan = plan_run(shape, len(pantographs), positions)
+    check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
+    warnings = run_warnings(shape, pantographs, speed, plan.start, time)
+    case = Case(pantographs, speed, plan.start, plan.distance, warnings)
+    _check_room(shape, case, time, store_wire, method)
+    for warning in warnings:
+        _log.warning(warning)
+    if method == "linearised":
+        return _linearised(shape, time, store_wire, case, progress)
+    set_up = partial(_compiled, shape, time, store_wire)
+    if not compiled:
+        set_up = partial(_by_exudyn, shape, time, store_wire, energy or method == "nonlinear")
+
+    def label(uplifts: Floats, journey: Journey) -> Run:
+        return make_run(shape, pantographs, uplifts, speed, time, journey, warnings, method)
+
+    keeper = None
+    if checkpoint is not None:
+        keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
+    return _until_mean_force(case, time, set_up, label, progress, keeper)
+
+
+def _check_options(
+    pantographs: Sequence[AnyPantograph],
+    speed: float,
+    method: Method,
+    energy: bool,
+    time: TimeSettings,
+    store_wire: float | None,
+) -> None:
     if not pantographs:
         raise InputError("pantographs is empty; give at least one")
     check_speed(speed)
@@ -98,50 +135,54 @@ def simulate(
         raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")
     if energy and method == "linearised":
         raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
-    time = time or TimeSettings()
     if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
         raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
-    plan = plan_run(shape, len(pantographs), positions)
-    check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
-    steps = int(plan.distance / (speed * time.step))
+
+
+def _check_room(
+    shape: Shape, case: Case, time: TimeSettings, store_wire: float | None, method: Method
+) -> None:
+    """Raises InputError for a run that takes more memory than there is."""
+    steps = int(case.distance / (case.speed * time.step))
     shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
-    needs = demand(shape.catenary, shape.mesh, pantographs, steps, shapes, method)
-    check_memory(needs, f"run at {3.6 * speed:g} km/h")
-    warnings = run_warnings(shape, pantographs, speed, plan.start, time)
-    for warning in warnings:
+    needs = demand(shape.catenary, shape.mesh, case.pantographs, steps, shapes, method)
+    check_memory(needs, f"run at {3.6 * case.speed:g} km/h")
+
+
+def _linearised(
+    shape: Shape, time: TimeSettings, store_wire: float | None, case: Case, progress: Progress | None
+) -> Run:
+    (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
+    if isinstance(result, CatenaryError):
+        raise result
+    for warning in result.warnings[len(case.warnings) :]:
         _log.warning(warning)
-    force = MeanForce(pantographs, speed)
-    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
-    if checkpoint is not None and not compiled:
-        raise InputError(
-            f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
-        )
-    if method == "linearised":
-        case = Case(pantographs, speed, plan.start, plan.distance, warnings)
-        (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
-        if isinstance(result, CatenaryError):
-            raise result
-        for warning in result.warnings[len(warnings) :]:
-            _log.warning(warning)
-        return result
-    begin = clock.perf_counter()
-    drive = (
-        _compiled(shape, time, store_wire)
-        if compiled
-        else _by_exudyn(shape, time, store_wire, energy or method == "nonlinear")
-    )
-    steps = int(np.floor(plan.distance / (speed * time.step) + 1e-9))
-    keeper = None
-    if checkpoint is not None:
-        keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
+    return result
+
+
+def _until_mean_force(
+    case: Case,
+    time: TimeSettings,
+    set_up: Callable[[], Drive],
+    label: Callable[[Floats, Journey], Run],
+    progress: Progress | None,
+    keeper: Checkpoint | None,
+) -> Run:
+    """Run once, or with other uplifts until the pantographs have the mean forces that they ask for.
+
+    label : makes a run of uplifts and a journey
+    """
+    force = MeanForce(case.pantographs, case.speed)
+    steps = int(np.floor(case.distance / (case.speed * time.step) + 1e-9))
+    if keeper:
         force.take_up(keeper)
+    begin = clock.perf_counter()
+    drive = set_up()
     while True:
-        pairs = list(zip(pantographs, force.uplifts.tolist(), strict=True))
-        label = partial(
-            make_run, shape, pantographs, force.uplifts, speed, time, warnings=warnings, method=method
-        )
-        with kept_when_stopped(label, steps * time.step):
-            run = label(drive(pairs, speed, plan.start, steps, progress, keeper))
+        pairs = list(zip(case.pantographs, force.uplifts.tolist(), strict=True))
+        labelled = partial(label, force.uplifts)
+        with kept_when_stopped(labelled, steps * time.step):
+            run = labelled(drive(pairs, case.speed, case.start, steps, progress, keeper))
         run = Run(run.data, clock.perf_counter() - begin)
         reached = force.reached(run)
         if keeper:
