@@ -153,13 +153,24 @@ def one_link(twin_setup, pantograph):
 
 
 @pytest.fixture(scope="module")
-def in_the_plane(plane_shape, pantograph, elastic):
+def plane_setup(plane_shape):
+    return LinearisedCatenary(plane_shape)._setup
+
+
+@pytest.fixture(scope="module")
+def in_the_plane(plane_setup, pantograph, elastic):
     """The first pantograph where the line begins, where a slope is the first of all coordinates."""
-    setup = LinearisedCatenary(plane_shape)._setup
-    return travel(setup, [pantograph.replace(contact_damping=40.0), elastic], [0.1, 70.0], 0)
+    return travel(plane_setup, [pantograph.replace(contact_damping=40.0), elastic], [0.1, 70.0], 0)
 
 
-@pytest.fixture(scope="module", params=["in_space", "one_link", "in_the_plane"])
+@pytest.fixture(scope="module")
+def one_contact(plane_setup, pantograph):
+    """All that acts, so its force is solved for once, how wire and head give being exact."""
+    pushing = pantograph.replace(contact_damping=20.0)
+    return travel(plane_setup, [pushing], [70.0], 0, slackening=0.0)
+
+
+@pytest.fixture(scope="module", params=["in_space", "one_link", "in_the_plane", "one_contact"])
 def journey(request):
     return request.getfixturevalue(request.param)
 
@@ -293,7 +304,7 @@ def test_a_step_is_recorded_where_it_ends(journey):
         assert records.masses[0, :, :, n] == pytest.approx(step.heads.q, abs=1e-12)
         assert records.supports[0, supports, n] == pytest.approx(q[line.supports[supports]], abs=1e-12)
         share = np.max(np.abs(q[line.tensions]) / line.rest)
-        assert 1e-3 < share == pytest.approx(records.share[0, n], rel=1e-9)
+        assert 1e-4 < share == pytest.approx(records.share[0, n], rel=1e-9)
         if records.every and n % records.every == 0:
             shape = records.wire[0, n // records.every, nodes]
             assert shape == pytest.approx(q[line.heights[nodes]], abs=1e-12)
