@@ -226,7 +226,8 @@ def _columns(factor: Any, right: Any) -> Columns:
         spacing *= 2  # neighbours overlap
     begin, end = large.argmax(axis=1), spacing - large[:, ::-1].argmax(axis=1)
     width = int((end - begin).max())
-    first = np.clip(low + begin, 0, size - width)
+    # all are as wide as the widest: the room to spare, to both sides
+    first = np.clip(low + (begin + end - width) // 2, 0, size - width)
     inside = first[:, None] + np.arange(width) - low[:, None]
     value = np.take_along_axis(values, np.clip(inside, 0, spacing - 1), axis=1)
     return Columns(first, np.where((inside >= 0) & (inside < spacing), value, 0.0))

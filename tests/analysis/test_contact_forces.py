@@ -66,16 +66,10 @@ class Ride(NamedTuple):
         return run
 
 
-def two_spans(path):
-    line = cf.load_catenary(path)
-    return line.replace(spans=line.spans[:2], supports=line.supports[:3], evaluated_spans=(2,))
-
-
 @pytest.fixture(scope="module")
-def slack(reference_layout, pantograph):
+def slack(plane_shape, pantograph):
     """In the plane, short of a dropper, which goes slack."""
-    shape = cf.find_form(two_spans(reference_layout))
-    return Ride(shape, pantograph.replace(uplift_force=250.0), 60.5, 100)
+    return Ride(plane_shape, pantograph.replace(uplift_force=250.0), 60.5, 100)
 
 
 @pytest.fixture(scope="module")
@@ -87,13 +81,9 @@ def damped(slack, pantograph):
 
 
 @pytest.fixture(scope="module")
-def space(reference_layout, pantograph):
-    """Two wires, links of 1.25 m, two strips that roll."""
-    line = two_spans(reference_layout.parent / "dc_3kv_twin.toml")
-    longer = [s.replace(steady_arm=s.steady_arm.replace(length=1.25)) for s in line.supports]
-    shape = cf.find_form(line.replace(supports=tuple(longer)))
-    head = cf.Panhead(width=1.6, strips=2, strip_distance=0.4, spring_distance=0.9, roll_inertia=1.0)
-    return Ride(shape, pantograph.replace(uplift_force=60.0, head=head), 52.0, 40)
+def space(twin_shape, pantograph, rolling_head):
+    """Two wires, links, two strips that roll."""
+    return Ride(twin_shape, pantograph.replace(uplift_force=60.0, head=rolling_head), 52.0, 40)
 
 
 def test_nonlinear_steps_in_the_plane(slack):
