@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
 from catenary_fe.analysis.compiled import COMPILED
-from catenary_fe.analysis.linear_start import can_be_compiled
-from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.start import can_be_compiled
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run, run_key

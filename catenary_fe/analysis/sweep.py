@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
-from catenary_fe.analysis.linear_arrays import LANES
-from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.arrays import LANES
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
 from catenary_fe.analysis.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.analysis.simulate import Method, plan_run, simulate
 from catenary_fe.analysis.sweep_store import Record, Store, open_store

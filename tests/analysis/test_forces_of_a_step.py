@@ -15,13 +15,13 @@ from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
 from catenary_fe.analysis.compiled import plain
-from catenary_fe.analysis.linear_forces import slacken, swing
-from catenary_fe.analysis.linear_kernel import advance
-from catenary_fe.analysis.linear_lanes import Lanes
-from catenary_fe.analysis.linear_records import Sizes
-from catenary_fe.analysis.linear_setup import Setup
-from catenary_fe.analysis.linear_start import Start, bow_forces, contact_row, static_contact
-from catenary_fe.analysis.linearised import LinearisedCatenary
+from catenary_fe.analysis.linearised.forces import slacken, swing
+from catenary_fe.analysis.linearised.kernel import advance
+from catenary_fe.analysis.linearised.lanes import Lanes
+from catenary_fe.analysis.linearised.records import Sizes
+from catenary_fe.analysis.linearised.run import LinearisedCatenary
+from catenary_fe.analysis.linearised.setup import Setup
+from catenary_fe.analysis.linearised.start import Start, bow_forces, contact_row, static_contact
 
 SPEED, STEPS = 80.0, 4  # [m/s], steps of 1 ms
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
 from catenary_fe.fe.drive import Trip, drive
 
 SPEED, STEPS = 275 / 3.6, 300

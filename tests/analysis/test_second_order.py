@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
 from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
 from catenary_fe.results.signal import low_pass
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from kernels import entry
 
-from catenary_fe.analysis.linear_setup import make_scheme
+from catenary_fe.analysis.linearised.setup import make_scheme
 from catenary_fe.analysis.nonlinear.forces import REACH, ROOM, give_at, soften, solve
 from catenary_fe.analysis.nonlinear.setup import make_factor, make_system
 from catenary_fe.analysis.nonlinear.state import _slack

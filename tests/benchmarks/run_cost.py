@@ -17,7 +17,7 @@ import numba
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.analysis.linear_kernel import take_one
+from catenary_fe.analysis.linearised.kernel import take_one
 from catenary_fe.analysis.nonlinear.cables import take_cables
 from catenary_fe.analysis.nonlinear.forces import give_at, solve
 from catenary_fe.analysis.nonlinear.run import NonlinearCatenary

@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.analysis.linear_arrays import LANES
-from catenary_fe.analysis.linearised import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.arrays import LANES
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
 from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
 from catenary_fe.fe.linear_model import linear_model
 

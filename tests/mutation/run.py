@@ -66,7 +66,7 @@ TARGETS = {  # module: tests that are quick and touch it
         "tests/results/test_pantograph_balances.py",
         "tests/results/test_guard_values.py",
     ],
-    "catenary_fe.analysis.linear_forces": ["tests/analysis/test_forces_of_a_step.py"]
+    "catenary_fe.analysis.linearised.forces": ["tests/analysis/test_forces_of_a_step.py"]
     + [
         f"{_CONTACT}::{name}"
         for name in (
@@ -88,7 +88,7 @@ TARGETS = {  # module: tests that are quick and touch it
         )
     ],
 }
-COMPILED = ("linear_forces", "nonlinear.forces")  # changed source does not reach compiled code
+COMPILED = ("linearised.forces", "nonlinear.forces")  # changed source does not reach compiled code
 LONGEST = 3.0, 20.0  # times what the tests take, and seconds: a mutant that takes longer is caught
 OTHER = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from catenary_fe.analysis.linear_arrays import Floats, Integers, Quads
+from catenary_fe.analysis.linearised.arrays import Floats, Integers, Quads
 from catenary_fe.analysis.nonlinear.cables import Elements
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import Floats, Integers
+from catenary_fe.analysis.linearised.arrays import Floats, Integers
 
 Tuple = tuple[float, ...]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Records, Scheme
+from catenary_fe.analysis.linearised.arrays import Records, Scheme
 from catenary_fe.analysis.nonlinear.energy import EnergyRecord
 from catenary_fe.analysis.nonlinear.state import State
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Scheme
-from catenary_fe.analysis.linear_start import Chain
+from catenary_fe.analysis.linearised.arrays import Scheme
+from catenary_fe.analysis.linearised.start import Chain
 from catenary_fe.analysis.nonlinear.state import State
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import Floats, Integers, Scheme
-from catenary_fe.analysis.linear_forces import one_way
-from catenary_fe.analysis.linear_kernel import lower_one, upper_one
+from catenary_fe.analysis.linearised.arrays import Floats, Integers, Scheme
+from catenary_fe.analysis.linearised.forces import one_way
+from catenary_fe.analysis.linearised.kernel import lower_one, upper_one
 from catenary_fe.analysis.nonlinear.arrays import Account, Ends, Factor, Motion, Slack, System
 
 REACH = 64  # groups of four coordinates beyond which a force is not felt within a step

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.checkpoint import Checkpoint
-from catenary_fe.analysis.linear_arrays import Records, Scheme, Wires
-from catenary_fe.analysis.linear_records import Sizes, load_heads, make_heads, make_records, read_journey
-from catenary_fe.analysis.linear_setup import make_scheme
-from catenary_fe.analysis.linear_start import Chain, Start, chain_of
+from catenary_fe.analysis.linearised.arrays import Records, Scheme, Wires
+from catenary_fe.analysis.linearised.records import Sizes, load_heads, make_heads, make_records, read_journey
+from catenary_fe.analysis.linearised.setup import make_scheme
+from catenary_fe.analysis.linearised.start import Chain, Start, chain_of
 from catenary_fe.analysis.nonlinear.arrays import Factor
 from catenary_fe.analysis.nonlinear.course import Course
 from catenary_fe.analysis.nonlinear.energy import EnergyRecord

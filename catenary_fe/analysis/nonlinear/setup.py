@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Scheme
-from catenary_fe.analysis.linear_setup import factorise, quads
+from catenary_fe.analysis.linearised.arrays import Scheme
+from catenary_fe.analysis.linearised.setup import factorise, quads
 from catenary_fe.analysis.nonlinear.arrays import Ends, Factor, Stations, System
 from catenary_fe.analysis.nonlinear.cables import Elements
 from catenary_fe.equilibrium import Shape

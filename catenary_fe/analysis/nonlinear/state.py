@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Heads, Scheme, Wires, Work
-from catenary_fe.analysis.linear_records import Sizes
-from catenary_fe.analysis.linear_start import Chain, Start
+from catenary_fe.analysis.linearised.arrays import Heads, Scheme, Wires, Work
+from catenary_fe.analysis.linearised.records import Sizes
+from catenary_fe.analysis.linearised.start import Chain, Start
 from catenary_fe.analysis.nonlinear.arrays import Account, Motion, Slack, System
 from catenary_fe.analysis.nonlinear.forces import ROOM
 

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from catenary_fe.analysis import linear_arrays, linear_forces, linear_kernel
 from catenary_fe.analysis.compiled import compiled, kept, stamp
-from catenary_fe.analysis.linear_arrays import Floats, Heads, Records, Scheme, Wires, Work
-from catenary_fe.analysis.linear_forces import (
+from catenary_fe.analysis.linearised import arrays as linear_arrays
+from catenary_fe.analysis.linearised import forces as linear_forces
+from catenary_fe.analysis.linearised import kernel as linear_kernel
+from catenary_fe.analysis.linearised.arrays import Floats, Heads, Records, Scheme, Wires, Work
+from catenary_fe.analysis.linearised.forces import (
     SWEEPS,
     TOLERANCE,
     advance_heads,
@@ -20,7 +22,7 @@ from catenary_fe.analysis.linear_forces import (
     push,
     weigh_contact,
 )
-from catenary_fe.analysis.linear_kernel import predict, take_one
+from catenary_fe.analysis.linearised.kernel import predict, take_one
 from catenary_fe.analysis.nonlinear import arrays, cables, forces
 from catenary_fe.analysis.nonlinear.arrays import Account, Factor, Motion, Slack, Stations, System
 from catenary_fe.analysis.nonlinear.cables import take_cables

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.compiled import plain
-from catenary_fe.analysis.linear_arrays import Line
-from catenary_fe.analysis.linear_kernel import bowed
-from catenary_fe.analysis.linear_setup import Setup
+from catenary_fe.analysis.linearised.arrays import Line
+from catenary_fe.analysis.linearised.kernel import bowed
+from catenary_fe.analysis.linearised.setup import Setup
 from catenary_fe.fe.linear_model import ContactLine
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, SolverError
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import Floats, Heads, Line, Links, Records, Scheme, Wires, Work
-from catenary_fe.analysis.linear_kernel import advance
+from catenary_fe.analysis.linearised.arrays import Floats, Heads, Line, Links, Records, Scheme, Wires, Work
+from catenary_fe.analysis.linearised.kernel import advance
 
 SWEEPS = 60
 TOLERANCE = 1e-9  # [N] by which forces may still change
@@ -36,7 +36,7 @@ def solve_one_way(spring: float, damper: float, cs: float, cd: float) -> float:
     F = (spring + damper) / (1 + cs + cd)
     s, r = spring - cs * F, damper - cd * F
     if s > 0 and -s <= r <= s:
-        return F
+        return max(F, 0.0)  # rounded
     F = 2 * spring / (1 + 2 * cs)
     if F > 0 and damper - cd * F > spring - cs * F:
         return F

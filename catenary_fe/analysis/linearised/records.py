@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Heads, Records, Scheme
-from catenary_fe.analysis.linear_start import Start
+from catenary_fe.analysis.linearised.arrays import Heads, Records, Scheme
+from catenary_fe.analysis.linearised.start import Start
 from catenary_fe.equilibrium import Shape
 
 if TYPE_CHECKING:

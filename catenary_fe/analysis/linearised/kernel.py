@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from catenary_fe.analysis.compiled import compiled
-from catenary_fe.analysis.linear_arrays import LANES, Floats, Line, Quads, Rows, Scheme, Wires
+from catenary_fe.analysis.linearised.arrays import LANES, Floats, Line, Quads, Rows, Scheme, Wires
 
 
 @compiled

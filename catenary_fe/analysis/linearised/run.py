@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_lanes import BLOCK, Lanes, most_lanes
-from catenary_fe.analysis.linear_records import Sizes
-from catenary_fe.analysis.linear_setup import Setup, set_up
-from catenary_fe.analysis.linear_start import Start, chain_of, static_contact
+from catenary_fe.analysis.linearised.lanes import BLOCK, Lanes, most_lanes
+from catenary_fe.analysis.linearised.records import Sizes
+from catenary_fe.analysis.linearised.setup import Setup, set_up
+from catenary_fe.analysis.linearised.start import Start, chain_of, static_contact
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.record import make_run
 from catenary_fe.equilibrium import Shape

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis.linear_arrays import Bowed, Columns, Line, Links, Operator, Quads, Rows, Scheme
+from catenary_fe.analysis.linearised.arrays import Bowed, Columns, Line, Links, Operator, Quads, Rows, Scheme
 from catenary_fe.fe.linear_model import HELD, LinearModel
 from catenary_fe.fe.solver_settings import TimeSettings
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.analysis import linear_arrays, linear_forces, linear_kernel
 from catenary_fe.analysis.compiled import COMPILED, compiled, kept, stamp, vectorising
-from catenary_fe.analysis.linear_arrays import (
+from catenary_fe.analysis.linearised import arrays, forces, kernel
+from catenary_fe.analysis.linearised.arrays import (
     LANES,
     Heads,
     Line,
@@ -19,8 +19,8 @@ from catenary_fe.analysis.linear_arrays import (
     Wires,
     Work,
 )
-from catenary_fe.analysis.linear_forces import advance_heads, meet, record
-from catenary_fe.analysis.linear_kernel import (
+from catenary_fe.analysis.linearised.forces import advance_heads, meet, record
+from catenary_fe.analysis.linearised.kernel import (
     advance,
     bow_eight,
     bow_one,
@@ -32,9 +32,9 @@ from catenary_fe.analysis.linear_kernel import (
     upper_eight,
     upper_one,
 )
-from catenary_fe.analysis.linear_records import Sizes, load_heads, make_heads, make_records, read_journey
-from catenary_fe.analysis.linear_setup import Setup, make_operator
-from catenary_fe.analysis.linear_start import Start
+from catenary_fe.analysis.linearised.records import Sizes, load_heads, make_heads, make_records, read_journey
+from catenary_fe.analysis.linearised.setup import Setup, make_operator
+from catenary_fe.analysis.linearised.start import Start
 from catenary_fe.equilibrium import Shape
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
     return one, eight
 
 
-_advance_one, _advance_eight = _loops(stamp(linear_arrays, linear_forces, linear_kernel))
+_advance_one, _advance_eight = _loops(stamp(arrays, forces, kernel))
 
 
 def _advance_plainly(
