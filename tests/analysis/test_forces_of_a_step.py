@@ -146,10 +146,20 @@ def in_space(twin_setup, pantograph, elastic, rolling_head):
 @pytest.fixture(scope="module")
 def one_link(twin_setup, pantograph):
     """But for two contacts all that acts, the other one being on its tangent."""
-    links = twin_setup.line.links
-    first = links._replace(**{name: getattr(links, name)[:1] for name in ("at", "span", "length", "k")})
-    line = twin_setup.line._replace(links=first)
-    return travel(replace(twin_setup, line=line), [pantograph], [52.0], 1, slackening=0.0)
+    return travel(with_links(twin_setup, 1), [pantograph], [52.0], 1, slackening=0.0)
+
+
+@pytest.fixture(scope="module")
+def two_contacts(twin_setup, pantograph):
+    """All that acts, of one head."""
+    return travel(with_links(twin_setup, 0), [pantograph], [52.0], 1, slackening=0.0)
+
+
+def with_links(setup, count):
+    """Only the first links leave their tangents."""
+    links = setup.line.links
+    kept = links._replace(**{name: getattr(links, name)[:count] for name in ("at", "span", "length", "k")})
+    return replace(setup, line=setup.line._replace(links=kept))
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +180,9 @@ def one_contact(plane_setup, pantograph):
     return travel(plane_setup, [pushing], [70.0], 0, slackening=0.0)
 
 
-@pytest.fixture(scope="module", params=["in_space", "one_link", "in_the_plane", "one_contact"])
+@pytest.fixture(
+    scope="module", params=["in_space", "one_link", "two_contacts", "in_the_plane", "one_contact"]
+)
 def journey(request):
     return request.getfixturevalue(request.param)
 
@@ -315,17 +327,49 @@ def test_a_step_is_recorded_where_it_ends(journey):
 
 def test_a_dropper_that_gives_much_is_brought_to_its_law(twin_setup):
     """A force on it changes spring and damper by up to what the dropper would take itself."""
-    setup, i = twin_setup, 3
-    row = setup.model.dropper_rows[i].toarray()[0]
-    gives, at, relax = row @ setup.factor.solve(row), row / (row @ row), entry(slacken)
-    for cs, cd, spring, damper in product(
-        (0.02, 0.4), (0.02, 0.5), (-30.0, 20.0, 50.0), (-80.0, -30.0, 15.0, 45.0, 80.0)
-    ):
-        k, d = (c / gives / step for c, step in ((cs, setup.scheme.b), (cd, setup.scheme.g)))
-        line = setup.line._replace(k=np.full_like(setup.line.k, k), d=np.full_like(setup.line.d, d))
-        lanes = Lanes(setup, Sizes(1, 1, 1, 1), 1)
-        lanes.wires.q[:, 0], lanes.wires.v[:, 0] = at * (spring - line.tension[i]) / k, at * damper / d
-        relax(setup.scheme, line, lanes.wires, lanes.work, 0, i)
-        taken = lanes.work.slack[0, i]
-        spring, damper = spring + cs * taken, damper + cd * taken
-        assert spring + damper - taken == pytest.approx(law(spring, damper), abs=1e-4)
+    for spring, damper in product((-30.0, 20.0, 50.0), (-80.0, -30.0, 15.0, 45.0, 80.0)):
+        for cs, cd in ((0.02, 0.4), (0.02, 0.5)):
+            one = Dropper(twin_setup, cs, cd)
+            one.is_moved_to(spring, damper)
+            ended = one.relaxed()
+            assert sum(ended) - one.taken == pytest.approx(law(*ended), abs=1e-4)
+
+
+@pytest.mark.parametrize(("spring", "damper"), [(500.0, 100.0), (0.5, 0.3), (0.5, -0.3)])
+def test_a_dropper_that_is_taut_again_has_nothing_taken_off(twin_setup, spring, damper):
+    one = Dropper(twin_setup, 0.02, 0.4)
+    one.is_moved_to(-30.0, -20.0)
+    one.relaxed()
+    assert one.taken != 0
+    one.is_moved_to(spring, damper)
+    assert one.relaxed() == pytest.approx((spring, damper), abs=1e-4)
+    assert one.taken == 0
+
+
+class Dropper:
+    """The fourth one, with such stiffness and damping that 1 N on it changes its forces by cs and cd."""
+
+    def __init__(self, setup, cs, cd):
+        self.scheme, self.i, self.gives = setup.scheme, 3, (cs, cd)
+        self.row = setup.model.dropper_rows[self.i].toarray()[0]
+        softness = self.row @ setup.factor.solve(self.row)
+        self.k, self.d = (c / softness / step for c, step in ((cs, self.scheme.b), (cd, self.scheme.g)))
+        line = setup.line
+        self.line = line._replace(k=np.full_like(line.k, self.k), d=np.full_like(line.d, self.d))
+        self.lanes = Lanes(setup, Sizes(1, 1, 1, 1), 1)
+
+    @property
+    def taken(self):
+        return self.lanes.work.slack[0, self.i]
+
+    def is_moved_to(self, spring, damper):
+        """Where it would have these forces with nothing taken off."""
+        at = self.row / (self.row @ self.row)
+        self.lanes.wires.q[:, 0] = at * (spring - self.line.tension[self.i]) / self.k
+        self.lanes.wires.v[:, 0] = at * damper / self.d
+        self._at = spring, damper
+
+    def relaxed(self):
+        """Its spring's and damper's force after having been brought to its law."""
+        entry(slacken)(self.scheme, self.line, self.lanes.wires, self.lanes.work, 0, self.i)
+        return tuple(force + c * self.taken for force, c in zip(self._at, self.gives, strict=True))

@@ -41,7 +41,7 @@ _FILES = ["tests/results/test_files.py"]
 _TABLES = ["tests/results/test_comparison.py"]
 _CONTACT = "tests/analysis/test_contact_forces.py"
 TARGETS = {  # module: tests that are quick and touch it
-    "catenary_fe.results.statistics": ["tests/results/test_statistics.py"],
+    "catenary_fe.results.statistics": ["tests/results/test_statistics.py", *_RUNS],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
     "catenary_fe.results.criteria": ["tests/results/test_criteria.py"],
     "catenary_fe.results.run": _RUNS,

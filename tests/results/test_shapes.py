@@ -134,7 +134,7 @@ def mixed(first, second, share):
     return tuple(np.sqrt(1 - share) * a + np.sqrt(share) * b for a, b in zip(first, second, strict=True))
 
 
-@pytest.mark.parametrize(("share", "kind"), [(0.48, "whole line"), (0.52, "bays")])
+@pytest.mark.parametrize(("share", "kind"), [(0.49, "whole line"), (0.51, "bays")])
 def test_what_has_more_energy_names_the_mode(share, kind):
     assert modes([mixed(sine(1), sine(2, 10.0), share)]).kind(0).kind == kind
 
