@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import tan
 
 import numpy as np
@@ -25,11 +25,13 @@ class DropperForces:
 
     pull : [N], shape (droppers,), vertical, on the contact wires
     lean : shape (droppers,), how far the upper end lies to the left of the lower one, over the height
+    righting : [N/m], shape (droppers,), pull over height: it grows sideways as the lower end moves
     half_weight : [N], shape (droppers,), of a dropper's half
     """
 
     pull: Floats
     lean: Floats
+    righting: Floats
     half_weight: Floats
 
 
@@ -48,7 +50,8 @@ class CutWires:
         self.arm_forces = np.zeros((mesh.contact_wires, len(catenary.supports), self.axes - 1))
         self.support_forces = np.zeros((len(catenary.supports), self.axes - 1))
         if self.axes == 3:  # a first guess for links of given inclination
-            self.arm_forces[:, :, 0] = -catenary.lateral_pulls / mesh.contact_wires
+            held = [support.steady_arm is not None for support in catenary.supports]
+            self.arm_forces[:, :, 0] = -catenary.lateral_pulls * held / mesh.contact_wires
 
     def clamp_weights(self, which: str) -> Floats:
         """[N], shape (droppers,), of the clamps at one of the droppers' ends."""
@@ -68,24 +71,31 @@ class CutWires:
             (int(n), up): float(z) for n, z in zip(nodes, catenary.design_heights[droppers], strict=True)
         }
         loads: dict[At, float] = {}
+        springs: dict[At, tuple[float, float]] = {}
         if self.axes == 3:
             sideways = (forces.pull * forces.lean)[droppers]
-            loads = {(int(n), 1): float(f) for n, f in zip(nodes, sideways, strict=True)}
-        springs = self._register(number, held, loads)
+            for n, force, righting in zip(nodes.tolist(), sideways, forces.righting[droppers], strict=True):
+                loads[n, 1] = float(force)
+                springs[n, 1] = float(righting), float(line.points[n, 1])
+        self._register(number, held, loads, springs)
         cut = Cut(held, loads, springs, self._side[number])
         statics = solve_wire(catenary.contact_wire, line, cut, what="form finding of the contact wire")
         self._read_arms(number, statics)
         pull = forces.pull.copy()
         weight = self.clamp_weights("contact_wire_clamp_mass") + forces.half_weight
         pull[droppers] = [statics.reactions[int(n), up] for n in nodes] + weight[droppers]
-        found = DropperForces(pull, forces.lean, forces.half_weight)
+        found = replace(forces, pull=pull)
         return straightened(catenary.contact_wire, mesh.x, statics, self.pulls[number], held), found
 
     def _register(
-        self, number: int, held: dict[At, float], loads: dict[At, float]
-    ) -> dict[int, tuple[float, float]]:
-        """Hold the wire at its arms and ends, as far as they do; returns the springs."""
-        catenary, springs = self.catenary, {}
+        self,
+        number: int,
+        held: dict[At, float],
+        loads: dict[At, float],
+        springs: dict[At, tuple[float, float]],
+    ) -> None:
+        """Hold the wire at its arms and ends, as far as they do."""
+        catenary = self.catenary
         nominal = catenary.contact_wire_height
         anchors = [range(len(catenary.supports))[i] for i in _ANCHORS]
         for i, support in enumerate(catenary.supports):
@@ -95,11 +105,10 @@ class CutWires:
             if i in anchors or (arm and arm.holds_height):
                 held[node, self.up] = nominal
             elif arm and arm.stiffness is not None:
-                springs[node] = (arm.stiffness, nominal)
+                springs[node, self.up] = (arm.stiffness, nominal)
                 loads[node, self.up] = arm.preload - GRAVITY * arm.mass
             elif arm:
                 loads[node, self.up] = self._lift(number, i, arm) - GRAVITY * arm.hanging_mass
-        return springs
 
     def _lift(self, number: int, support: int, arm: SteadyArm) -> float:
         """[N] upward, of a link of given inclination under the sideways force that it has."""

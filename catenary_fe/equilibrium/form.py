@@ -49,7 +49,7 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     wires = CutWires(catenary, make_mesh(catenary, settings))
     lines = guess_lines(wires)
     lengths, none = np.zeros(len(catenary.droppers)), np.zeros(len(catenary.droppers))
-    forces = DropperForces(none, none, none)
+    forces = DropperForces(none, none, none, none)
     for _ in range(_PASSES):
         before = lengths
         lines, forces = _pass(wires, lines, forces)
@@ -60,7 +60,7 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
         lengths = distance - tension / np.array([d.stiffness for d in catenary.droppers])
         weight = GRAVITY * np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
         lean = spread[:, 1] / spread[:, -1] if wires.axes == 3 else none
-        forces = DropperForces(forces.pull, lean, weight)
+        forces = DropperForces(forces.pull, lean, forces.pull / spread[:, -1], weight)
         if np.abs(lengths - before).max(initial=0.0) < _SETTLED:
             break
     else:
@@ -90,7 +90,7 @@ def find_heights(
     wires = CutWires(catenary, make_mesh(catenary, settings))
     lines = guess_lines(wires)
     none = np.zeros(lengths.size)
-    forces = DropperForces(none, none, none)
+    forces = DropperForces(none, none, none, none)
     for number in range(wires.mesh.contact_wires):
         lines[number], forces = wires.hang_contact_wire(number, lines[number], forces)
     installation = Installation(tuple(lines), lengths, wires.arm_forces, wires.support_forces)

@@ -25,13 +25,13 @@ class Cut:
 
     held : (node, axis) to the coordinate [m] at which it is held
     loads : (node, axis) to a force [N]
-    springs : node to stiffness [N/m] and force-free height [m] of a vertical spring to the ground
+    springs : (node, axis) to stiffness [N/m] and force-free coordinate [m] of a spring to the ground
     side_pull : as in :class:`~catenary_fe.fe.overlay.Overlay`
     """
 
     held: Mapping[At, float]
     loads: Mapping[At, float] = field(default_factory=dict)
-    springs: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    springs: Mapping[At, tuple[float, float]] = field(default_factory=dict)
     side_pull: Floats | None = None
 
 
@@ -75,9 +75,9 @@ def solve_wire(wire: Wire, line: WireLine, cut: Cut, *, what: str) -> WireStatic
     for (node, axis), force in cut.loads.items():
         marker = items.coordinate_marker(mbs, node, axis)
         mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=float(force)))
-    for node, (stiffness, height) in cut.springs.items():
-        markers = [ground, items.coordinate_marker(mbs, node, items.up)]
-        offset = height - float(line.z[node])
+    for (node, axis), (stiffness, at_rest) in cut.springs.items():
+        markers = [ground, items.coordinate_marker(mbs, node, axis)]
+        offset = at_rest - float(line.points[node, axis])
         mbs.AddObject(
             eii.ObjectConnectorCoordinateSpringDamper(
                 markerNumbers=markers, stiffness=stiffness, offset=offset

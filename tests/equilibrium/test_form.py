@@ -174,6 +174,7 @@ def no_arm(_):
         ("en50318_2018_ac_simple", None, None, 1e-6),
         ("en50318_2018_ac_simple", (spring, as_it_is), None, 1e-6),
         ("en50318_2018_ac_simple", (as_it_is, inclined), None, 1e-6),
+        ("en50318_2018_ac_simple", (no_arm, as_it_is), None, 1e-6),
         ("dc_3kv_twin", None, None, 3e-6),
         ("en50318_2018_ac_stitched", None, None, 3e-6),
         ("en50318_2018_ac_stitched", None, 1200.0, 3e-6),
@@ -184,7 +185,8 @@ def test_given_lengths_give_any_line_back(reference_layout, layout, arms, radius
     line = cut(cf.load_catenary(reference_layout.parent / f"{layout}.toml"))
     if arms:  # of the two masts between the ends
         first, second = (
-            s.replace(steady_arm=arm(s.steady_arm)) for arm, s in zip(arms, line.supports[1:3], strict=True)
+            s.replace(steady_arm=arm(s.steady_arm), stagger=s.stagger if arm(s.steady_arm) else 0.0)
+            for arm, s in zip(arms, line.supports[1:3], strict=True)
         )
         line = line.replace(supports=(line.supports[0], first, second, line.supports[3]))
     if radius:
@@ -199,6 +201,26 @@ def test_given_lengths_give_any_line_back(reference_layout, layout, arms, radius
     for kind in ("arm_forces", "support_forces"):
         mine, other = (getattr(shape.installation, kind) for shape in (back, there))
         assert mine == pytest.approx(other, abs=5e3 * metres), kind
+
+
+def test_a_wire_without_an_arm_hangs_where_its_droppers_let_it(reference_layout):
+    """Between arms on the same side, as far from the straight line as tension and leaning droppers agree."""
+    line = cut(cf.load_catenary(reference_layout.parent / "en50318_2018_ac_simple.toml"))
+    supports = line.supports[0], line.supports[1].replace(steady_arm=None, stagger=0.0), *line.supports[2:]
+    limp = line.contact_wire.replace(bending_stiffness=1.0)  # stiffness and long elements round kinks at arms
+    line = line.replace(supports=supports, contact_wire=limp)
+    shape = cf.find_form(line, cf.MeshSettings(at_clamps=0.05))
+    assert shape.steady_arm_lateral_forces[1] == 0
+    wire, inside = shape.contact_wires[0], shape.mesh.lower.node[line.dropper_spans <= 2]
+    x, y = wire.x[inside], wire.y[inside]
+    near = line.dropper_spans <= 2
+    pulls = shape.dropper_forces[near] * (shape.messenger_wire.lateral(x) - y) / shape.installed_lengths[near]
+    # a string of two spans under its tension with these pulls on it, from stagger to stagger
+    length, T = line.support_positions[2], line.contact_wire.tension
+    a, b = wire.lateral([0.0, length])
+    at = np.minimum.outer(x, x) * (length - np.maximum.outer(x, x)) / (length * T)
+    assert y == pytest.approx(a + (b - a) * x / length + at @ pulls, abs=2e-4)
+    assert np.abs(at @ pulls).max() > 0.05
 
 
 def test_arms_carry_what_they_say(reference_layout):
