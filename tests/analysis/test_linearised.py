@@ -79,6 +79,30 @@ def test_lanes_do_not_know_of_each_other(short_shape, pantograph):
             assert np.array_equal(one.data[name].values, again.data[name].values, equal_nan=True)
 
 
+def test_a_lane_forgets_the_run_before(short_shape, pantograph):
+    """Runs end with slack droppers near the pantograph; the next one in that lane begins with none."""
+    strong = pantograph.replace(uplift_force=250.0)
+    line, start = LinearisedCatenary(short_shape), np.array([10.0])
+    before, case = Case([strong], 60.0, start, 215.0), Case([strong], 60.0, start, 212.0)
+    (alone,) = line.run([case])
+    (first, *_), after = line.run([before] * 8), line.run([before] * 8 + [case] * 8)[8:]
+    assert (first.data["dropper_force"].values[:, -1] <= 0).any()
+    for run in after:
+        for name in ("contact_force", "dropper_force"):
+            assert run.data[name].values == pytest.approx(alone.data[name].values, abs=1e-6), name
+
+
+def test_a_run_that_is_repeated_is_the_one_with_the_uplift_that_was_found(short_shape, pantograph):
+    wanted = pantograph.replace(uplift_force=None, mean_force=200.0)
+    found = cf.simulate(short_shape, [wanted], speed=70.0, method="linearised")
+    uplift = float(found.data["uplift_force"].values[0])
+    same = cf.simulate(
+        short_shape, [pantograph.replace(uplift_force=uplift)], speed=70.0, method="linearised"
+    )
+    for name in ("contact_force", "dropper_force", "mass_height"):
+        assert np.array_equal(found.data[name].values, same.data[name].values), name
+
+
 PLAIN = """
 import sys
 if {plain}:
