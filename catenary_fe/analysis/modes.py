@@ -36,10 +36,23 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
         pairs = solve_eigen(system, nodes, wanted)
     up = system.node_width // 2 - 1
     contact, messenger = (
-        WireShapes(shape.wires[wire].x, pairs.shapes[wire][:, :, up], pairs.shapes[wire][:, :, -1])
+        WireShapes(
+            shape.wires[wire].x,
+            pairs.shapes[wire][:, :, up],
+            pairs.shapes[wire][:, :, -1],
+            pairs.shapes[wire][:, :, 1] if up > 1 else None,
+        )
         for wire in (0, shape.mesh.contact_wires)
     )
-    modes = Modes(shape.catenary, pairs.frequencies, contact, messenger, pairs.along, pairs.damping_ratios)
+    modes = Modes(
+        shape.catenary,
+        pairs.frequencies,
+        contact,
+        messenger,
+        pairs.along,
+        pairs.sideways,
+        pairs.damping_ratios,
+    )
     return modes if below is None else modes.below(below)
 
 

@@ -54,13 +54,14 @@ class EigenPairs:
 
     frequencies : [Hz], shape (modes,)
     shapes : [1/√kg], for each wire shape (modes, nodes, 2 * axes): positions and slopes of the nodes
-    along : shape (modes,), share of the kinetic energy that does not move up and down
+    along, sideways : shape (modes,), shares of the kinetic energy that move along the track and to its sides
     damping_ratios : shape (modes,), of critical damping, from the diagonal of the modal damping matrix
     """
 
     frequencies: Floats
     shapes: list[Floats]
     along: Floats
+    sideways: Floats
     damping_ratios: Floats
 
 
@@ -110,13 +111,17 @@ def solve_eigen(system: LinearSystem, nodes: Sequence[int], count: int) -> Eigen
     filled = system.transformation @ vectors
     ends = width * np.cumsum([0, *nodes])
     shapes = [filled[a:b].T.reshape(count, -1, width) for a, b in pairwise(ends)]
-    is_up = (
-        np.asarray(system.transformation.T @ (np.arange(len(filled)) % (width // 2) == width // 2 - 1)) > 0
+    axes = width // 2
+    along, *sideways, _ = (
+        (vectors * weighted)[system.transformation.T @ (np.arange(len(filled)) % axes == axis) > 0].sum(
+            axis=0
+        )
+        for axis in range(axes)
     )
-    up = (vectors * weighted)[is_up].sum(axis=0)
     omega = np.sqrt(squares)
     damping = np.einsum("ij,ij->j", vectors, system.damping @ vectors) / (2 * omega)
-    return EigenPairs(omega / (2 * np.pi), shapes, 1 - up, damping)
+    aside = sideways[0] if sideways else np.zeros(count)
+    return EigenPairs(omega / (2 * np.pi), shapes, along, aside, damping)
 
 
 def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Symmetry = Literal["symmetric", "antisymmetric", "neither"]
 
+IN_WORDS = {"along": "along the track", "sideways": "sideways"}  # kinds that have no half-waves
 _ALIKE = 0.7  # correlation with the mirror image from which a shape counts as symmetric
 _SHAPES = 6  # half-waves in a bay that are told apart
 _SAMPLES = 24  # of a bay
@@ -29,17 +30,17 @@ class ModeKind:
 
     symmetry : about the line's middle; 'neither' where bays far apart swing on their own
     kind : 'whole line': the clamps move with the wires; 'bays': the wires swing between clamps that stay;
-        'along': the wires move along the track
+        'along': the wires move along the track; 'sideways': across it
     half_waves : of the whole line, or of the bays (1: first shape, 2: second shape …)
     """
 
     symmetry: Symmetry
-    kind: Literal["whole line", "bays", "along"]
+    kind: Literal["whole line", "bays", "along", "sideways"]
     half_waves: int
 
     def __str__(self) -> str:
-        if self.kind == "along":
-            return "along the track"
+        if self.kind in ("along", "sideways"):
+            return IN_WORDS[self.kind]
         waves = "half-wave" if self.half_waves == 1 else "half-waves"
         where = f"whole line, {self.half_waves} {waves}"
         if self.kind == "bays":
@@ -49,16 +50,18 @@ class ModeKind:
 
 @dataclass(frozen=True)
 class WireShapes:
-    """Vertical shapes of one wire, mass-normalised over the whole line.
+    """Shapes of one wire, vertical if not said otherwise, mass-normalised over the whole line.
 
     x : [m], shape (nodes,)
     values : [1/√kg], shape (modes, nodes)
     slopes : [1/(m √kg)], shape (modes, nodes)
+    lateral : [1/√kg], shape (modes, nodes), to the left; none in the plane
     """
 
     x: Floats
     values: Floats
     slopes: Floats
+    lateral: Floats | None = None
 
     def at(self, x: ArrayLike) -> Floats:
         """[1/√kg], shape (modes, points): shapes at positions [m], cubic inside the elements."""
@@ -68,6 +71,11 @@ class WireShapes:
         shapes: Floats = spline(np.asarray(x, dtype=float)).T
         return shapes
 
+    def first(self, count: int) -> WireShapes:
+        """Only the first modes."""
+        lateral = None if self.lateral is None else self.lateral[:count]
+        return WireShapes(self.x, self.values[:count], self.slopes[:count], lateral)
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -76,7 +84,7 @@ class Modes:
     catenary : the line
     frequencies : [Hz], shape (modes,)
     contact, messenger : shapes of the wires
-    along : shape (modes,), share of the kinetic energy that moves along the track
+    along, sideways : shape (modes,), shares of the kinetic energy that move along the track and across it
     damping_ratios : shape (modes,), of critical damping
     """
 
@@ -85,6 +93,7 @@ class Modes:
     contact: WireShapes
     messenger: WireShapes
     along: Floats
+    sideways: Floats
     damping_ratios: Floats
 
     def __len__(self) -> int:
@@ -93,11 +102,14 @@ class Modes:
     def below(self, frequency: float) -> Modes:
         """Only the modes up to a frequency [Hz]."""
         n = int(np.searchsorted(self.frequencies, frequency, side="right"))
-        contact, messenger = (
-            WireShapes(wire.x, wire.values[:n], wire.slopes[:n]) for wire in (self.contact, self.messenger)
-        )
         return Modes(
-            self.catenary, self.frequencies[:n], contact, messenger, self.along[:n], self.damping_ratios[:n]
+            self.catenary,
+            self.frequencies[:n],
+            self.contact.first(n),
+            self.messenger.first(n),
+            self.along[:n],
+            self.sideways[:n],
+            self.damping_ratios[:n],
         )
 
     def compliance(self, positions: ArrayLike) -> Floats:
@@ -110,9 +122,9 @@ class Modes:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
         if not 0 <= mode < len(self):
             raise InputError(f"mode {mode}: {len(self)} modes were computed, numbered from 0")
+        if self.along[mode] + self.sideways[mode] > 0.5:
+            return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)
-        if self.along[mode] > 0.5:
-            return ModeKind(symmetry, "along", 0)
         whole, bays = 0.0, np.zeros(_SHAPES)
         for wire, x, shape in self._bay_samples(mode):
             of_clamps, of_bays = _bay_energies(x, shape)
@@ -141,7 +153,7 @@ class Modes:
         ]
 
     def count_by_kind(self) -> Counter[str]:
-        """How many modes swing how: 'whole line', 'bays 1', 'bays 2' …, 'along'."""
+        """How many modes swing how: 'whole line', 'bays 1' …, 'along', 'sideways'."""
         return Counter(f"bays {k.half_waves}" if k.kind == "bays" else k.kind for k in self.kinds())
 
     def plot(self, mode: int, ax: Axes | None = None) -> Axes:

@@ -85,7 +85,7 @@ def bay(half_waves, number):
     return tuple(np.where(inside, values, 0.0) for values in sine(half_waves, 10.0))
 
 
-def modes(contact, messenger=None, along=None, line=LINE, frequencies=None, scale=0.01):
+def modes(contact, messenger=None, along=None, sideways=None, line=LINE, frequencies=None, scale=0.01):
     """Modes with given shapes of the contact wire, each (values, slopes), and of the messenger wire."""
     n = len(contact)
     wires = [
@@ -93,7 +93,8 @@ def modes(contact, messenger=None, along=None, line=LINE, frequencies=None, scal
         for shapes in (contact, messenger or contact)
     ]
     frequencies = np.arange(1.0, n + 1) if frequencies is None else np.asarray(frequencies)
-    return Modes(line, frequencies, *wires, np.asarray(along or [0.0] * n), 0.01 * np.arange(n))
+    shares = (np.asarray(share or [0.0] * n) for share in (along, sideways))
+    return Modes(line, frequencies, *wires, *shares, 0.01 * np.arange(n))
 
 
 def test_shapes_between_nodes_are_cubic():
@@ -124,9 +125,10 @@ def test_bays_between_clamps_that_stay(half_waves):
 
 
 def test_along_the_track():
-    kinds = modes([sine(1)] * 3, along=[0.5, 0.51, 0.9]).kinds()
-    assert [k.kind for k in kinds] == ["whole line", "along", "along"]
-    assert (str(kinds[1]), kinds[1].half_waves, kinds[1].symmetry) == ("along the track", 0, "symmetric")
+    kinds = modes([sine(1)] * 5, along=[0.5, 0.51, 0.9, 0.2, 0.3], sideways=[0, 0, 0, 0.7, 0.25]).kinds()
+    assert [k.kind for k in kinds] == ["whole line", "along", "along", "sideways", "along"]
+    assert str(kinds[3]) == "sideways"
+    assert (str(kinds[1]), kinds[1].half_waves, kinds[1].symmetry) == ("along the track", 0, "neither")
 
 
 def mixed(first, second, share):
@@ -215,6 +217,7 @@ def test_modes_up_to_a_frequency():
     assert len(some) == 3
     assert np.array_equal(some.frequencies, [1.0, 2.0, 3.0])
     assert np.array_equal(some.along, [0.1, 0.2, 0.3])
+    assert np.array_equal(some.sideways, [0.0, 0.0, 0.0])
     assert np.array_equal(some.damping_ratios, [0.0, 0.01, 0.02])
     for part, of in ((some.contact, whole.contact), (some.messenger, whole.messenger)):
         assert np.array_equal(part.x, NODES)

@@ -81,8 +81,8 @@ class Lanes:
         for array, values in zip(self.wires, (start.q, zero, zero, zero, start.q), strict=True):
             array[:, lane] = values
         self.work.active_count[lane] = 0
-        for forces in (self.work.force, self.work.slack, self.work.swing):
-            forces[lane] = 0.0  # those with which the run before ended
+        for array in (self.work.force, self.work.slack, self.work.swing):
+            array[lane] = 0.0  # forces with which the run before ended
         self.work.tension[lane] = start.q[self._setup.line.tensions]
         load_heads(self.heads, self.records, lane, self._setup.scheme, start, steps)
         supports, heights = self._setup.line.supports, self._setup.model.heights
