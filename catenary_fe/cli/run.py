@@ -239,6 +239,12 @@ def forget_partial(folder: Folder) -> None:
         shutil.rmtree(place, ignore_errors=True)
 
 
+_OF_A_RUN = (  # of another one they would say what is not so
+    "criteria.png", "energy.png", "report.html", "pantograph_*.toml",
+    "csv/pantograph_*.csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
+)  # fmt: skip
+
+
 def write_run(
     folder: Folder, shape: Shape, result: Run, summary: dict[str, Any], rows: Sequence[Criterion] = ()
 ) -> None:
@@ -249,6 +255,7 @@ def write_run(
     folder.json("summary.json", summary)
     folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
     folder.keep()  # the run is safe whatever happens to its pictures
+    folder.forget(*_OF_A_RUN)
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
     folder.picture("contact_force.png", views.plot_contact_force(result))

@@ -3,6 +3,7 @@
 import csv
 import html
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -107,6 +108,22 @@ def test_export(capsys, folder, tmp_path):
         assert "mass_2_height_m" not in file.readline()
     with (tmp_path / "csv" / "dropper_force.csv").open() as file:
         assert "dropper_27_at_175_m_force_N" in file.readline()
+
+
+def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(capsys, folder, tmp_path):
+    place, line = tmp_path / "run", folder.parent / "line.toml"
+    shutil.copytree(folder, place)
+    (place / "notes.txt").write_text("mine")
+    assert call(capsys, "export", place)[0] == 0
+    assert call(capsys, "report", place)[0] == 0
+    (place / "criteria.png").write_bytes(b"of the run before")
+    arguments = ["--speed-kmh", "150", "--time-step-ms", "4", "--method", "linearised", "--quiet"]
+    assert call(capsys, "run", line, "--pantograph", "EN 50318:2002", *arguments, "-o", place)[0] == 0
+    left = {str(file.relative_to(place)) for file in place.rglob("*") if file.is_file()}
+    assert left == {
+        "run.nc", "summary.json", "layout.toml", "inputs.json", "dropper_schedule.csv", "layout.png",
+        "static_shape.png", "contact_force.png", "support_uplift.png", "dropper_forces.png", "notes.txt",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("command", [["rerun"], ["export"], ["report"]])
