@@ -12,6 +12,7 @@ from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
+from catenary_fe.system.parameters import shorten
 from catenary_fe.system.plausibility import layout_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
@@ -33,6 +34,18 @@ def check_speed(speed: float) -> None:
             f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
             " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
         )
+
+
+def check_pantographs(pantographs: object) -> None:
+    """Raises InputError for what is not a list of pantographs."""
+    remedy = "give a list of pantographs, such as [library.pantograph('DSA250')]"
+    if isinstance(pantographs, str) or not isinstance(pantographs, Sequence):
+        raise InputError(f"pantographs = {shorten(pantographs)}: {remedy}")
+    if not pantographs:
+        raise InputError("pantographs is empty; give at least one")
+    for i, pantograph in enumerate(pantographs, start=1):
+        if not isinstance(pantograph, AnyPantograph):
+            raise InputError(f"pantograph {i} = {shorten(pantograph)}: {remedy}")
 
 
 def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float, end: float) -> None:
@@ -79,12 +92,12 @@ def run_warnings(
     found = layout_warnings(catenary)
     if speed > WAVE_SPEED_SHARE * wave_speed:
         found.append(
-            f"speed {3.6 * speed:.0f} km/h is {speed / wave_speed:.2f} of the contact wire's wave speed,"
+            f"speed {3.6 * speed:.4g} km/h is {speed / wave_speed:.3f} of the contact wire's wave speed,"
             f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}"
         )
     longest = float(np.diff(shape.mesh.contact.x).max())
-    wavelength = max(wave_speed - speed, 0.0) / CUT_OFF
-    if longest > wavelength:
+    wavelength = (wave_speed - speed) / CUT_OFF
+    if 0 < wavelength < longest:  # beyond the wave speed nothing runs ahead
         found.append(
             f"elements of up to {longest:.2f} m are longer than the waves of {CUT_OFF:g} Hz ahead of the"
             f" pantograph, {wavelength:.2f} m; refine the mesh"

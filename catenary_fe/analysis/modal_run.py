@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import Modes
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Pantograph
@@ -41,6 +41,7 @@ def modal_run(
 
     Raises InputError where the run does not fit on the line, no mode is left, or the contact has a damper.
     """
+    check_shape(shape)
     if not (np.isfinite(speed) and speed > 0):  # no upper bound: studies go beyond the wave speed
         raise InputError(f"speed = {speed!r} m/s: must be above 0")
     margin = float(np.diff(shape.catenary.support_positions).min()) / 6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.results.modes import Modes, WireShapes
 from catenary_fe.system import InputError
 
@@ -21,6 +21,7 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
     """
     from catenary_fe.fe.modal import linear_system, solve_eigen
 
+    check_shape(shape)
     if count is not None and count < 1:
         raise InputError(f"modes: count = {count}: must be at least 1")
     if below is not None and not (np.isfinite(below) and below > 0):

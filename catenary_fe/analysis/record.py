@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
 
 Floats = NDArray[np.float64]
+_NOTES = 3  # by themselves
 CHECKPOINT_FORM = 2  # rises when what a checkpoint holds changes
 
 
@@ -78,8 +79,15 @@ def make_run(
             _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
     _add_balances(variables, coordinates, shape, journey)
     attributes = _provenance(shape, pantographs, speed, time, method)
-    attributes["warnings"] = json.dumps([*warnings, *journey.notes])
+    attributes["warnings"] = json.dumps([*warnings, *_brief(journey.notes)])
     return Run(xr.Dataset(variables, coordinates, attributes))
+
+
+def _brief(notes: Sequence[str]) -> list[str]:
+    """The first notes, and how many more there are."""
+    if len(notes) <= _NOTES:
+        return list(notes)
+    return [*notes[: _NOTES - 1], f"{len(notes) - _NOTES + 1} more such warnings, the last one: {notes[-1]}"]
 
 
 def _add_balances(

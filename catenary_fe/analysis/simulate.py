@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.checkpoint import Checkpoint
-from catenary_fe.analysis.checks import check_heads, check_speed, run_warnings
+from catenary_fe.analysis.checks import check_heads, check_pantographs, check_speed, run_warnings
 from catenary_fe.analysis.compiled import COMPILED
 from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
 from catenary_fe.analysis.linearised.start import can_be_compiled
@@ -22,7 +22,7 @@ from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run, run_key
 from catenary_fe.analysis.resources import check_memory, demand
-from catenary_fe.equilibrium import Shape
+from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.system import AnyPantograph, CatenaryError, InputError
@@ -91,9 +91,11 @@ def simulate(
     the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
     the mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
     """
+    check_shape(shape)
+    check_pantographs(pantographs)
     time = time or TimeSettings()
     compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
-    _check_options(pantographs, speed, method, energy, time, store_wire)
+    _check_options(speed, method, energy, time, store_wire)
     if checkpoint is not None and not compiled:
         raise InputError(
             f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
@@ -121,15 +123,8 @@ def simulate(
 
 
 def _check_options(
-    pantographs: Sequence[AnyPantograph],
-    speed: float,
-    method: Method,
-    energy: bool,
-    time: TimeSettings,
-    store_wire: float | None,
+    speed: float, method: Method, energy: bool, time: TimeSettings, store_wire: float | None
 ) -> None:
-    if not pantographs:
-        raise InputError("pantographs is empty; give at least one")
     check_speed(speed)
     if method not in get_args(Method):
         raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.results import Elasticity
 from catenary_fe.system import InputError
 
@@ -41,6 +41,7 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
     """
     from catenary_fe.fe.static_load import LoadedCatenary
 
+    check_shape(shape)
     _check_positions(shape, np.array([x for x, _ in forces], dtype=float))
     loaded = LoadedCatenary(shape.catenary, shape.mesh, shape.installation, forces=len(forces))
     if forces:
@@ -80,6 +81,7 @@ def elasticity(
     """
     from catenary_fe.fe.static_load import lift_curve
 
+    check_shape(shape)
     if not (np.isfinite(force) and force > 0):
         raise InputError(f"elasticity: force = {force!r} N: must be above 0; 100 to 200 N are usual")
     if points_per_span < 2:

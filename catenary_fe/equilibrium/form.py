@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.equilibrium.cut_wires import CutWires, DropperForces, straightened
 from catenary_fe.equilibrium.form_checks import (
+    check_catenary,
     check_links,
     check_pulls,
     check_room,
@@ -45,6 +46,7 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     Raises InputError for a design in which a dropper or a steady arm would have to push or has no room,
     SolverError where no equilibrium is found or the heights are off by more than 0.1 mm.
     """
+    check_catenary(catenary)
     settings = mesh or MeshSettings()
     wires = CutWires(catenary, make_mesh(catenary, settings))
     lines = guess_lines(wires)
@@ -85,6 +87,7 @@ def find_heights(
 
     Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
     """
+    check_catenary(catenary)
     settings = mesh or MeshSettings()
     lengths = given_lengths(catenary, lengths)
     wires = CutWires(catenary, make_mesh(catenary, settings))

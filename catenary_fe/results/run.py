@@ -266,9 +266,15 @@ class Run:
 
 
 def load_run(path: str | Path) -> Run:
-    """Read a run that was saved. Raises InputError where the file is missing, damaged or something else."""
+    """Read a run that was saved, from its file or its folder.
+
+    Raises InputError where the file is missing, damaged or something else.
+    """
     import xarray as xr
 
+    path = Path(path)
+    if path.is_dir():
+        path /= "run.nc"
     try:
         with xr.open_dataset(path, engine="scipy") as opened:
             data = opened.load()

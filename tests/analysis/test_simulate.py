@@ -199,7 +199,7 @@ def warnings_of(shape, pantograph, speed=70.0, start=10.0, **time):
 def test_warnings_name_rule_and_both_numbers(reference, reference_shape, pantograph):
     assert warnings_of(reference_shape, pantograph) == []
     (fast,) = warnings_of(reference_shape, pantograph, speed=90.0)
-    assert "324 km/h is 0.74 of the contact wire's wave speed, 438 km/h; the rule is at most 0.7" in fast
+    assert "324 km/h is 0.739 of the contact wire's wave speed, 438 km/h; the rule is at most 0.7" in fast
     assert "2 spans" not in fast
     (late,) = warnings_of(reference_shape, pantograph, start=200.0)
     assert "only 1 spans lie between" in late

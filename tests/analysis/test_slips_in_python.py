@@ -1,0 +1,50 @@
+"""Slips of those who script: one clear line, not the inside of a program."""
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+
+SLIPS = {
+    "a pantograph alone": (lambda s, p: cf.simulate(s, p, speed=50.0), "pantographs = Pantograph"),
+    "a name": (lambda s, p: cf.simulate(s, "DSA250", speed=50.0), "pantographs = 'DSA250': give a list"),
+    "a list of names": (lambda s, p: cf.simulate(s, ["DSA250"], speed=50.0), "pantograph 1 = 'DSA250'"),
+    "no pantograph": (lambda s, p: cf.simulate(s, [], speed=50.0), "pantographs is empty"),
+    "no shape": (lambda s, p: cf.simulate(s.catenary, [p], speed=50.0), r"give find_form\(catenary\)"),
+    "elasticity": (lambda s, p: cf.elasticity(s.catenary), "must be a static shape"),
+    "statics": (lambda s, p: cf.solve_statics(s.catenary), "must be a static shape"),
+    "modes": (lambda s, p: cf.solve_modes(s.catenary), "must be a static shape"),
+    "a file's name": (lambda s, p: cf.find_form("line.toml"), "catenary = 'line.toml': must be a Catenary"),
+    "heights": (lambda s, p: cf.find_heights("line.toml"), "load_catenary reads a file"),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_slips(short_shape, pantograph, slip):
+    ask, words = SLIPS[slip]
+    with pytest.raises(cf.InputError, match=words) as caught:
+        ask(short_shape, pantograph)
+    assert len(caught.value.problems) == 1
+
+
+def test_a_run_is_read_from_its_folder(short_run, tmp_path):
+    short_run.save(tmp_path / "run.nc")
+    assert cf.load_run(tmp_path).data.identical(short_run.data)
+
+
+def test_many_notes_are_told_by_their_number():
+    from catenary_fe.analysis.record import _brief
+
+    assert _brief(["a", "b", "c"]) == ["a", "b", "c"]
+    assert _brief(["a", "b", "c", "d", "e"]) == ["a", "b", "3 more such warnings, the last one: e"]
+
+
+def test_beyond_the_wave_speed_no_mesh_is_asked_for(short_shape, pantograph):
+    from catenary_fe.analysis.checks import run_warnings
+    from catenary_fe.fe import TimeSettings
+
+    wave_speed = short_shape.catenary.contact_wire.wave_speed
+    said = run_warnings(short_shape, [pantograph], 1.01 * wave_speed, np.array([20.0]), TimeSettings())
+    assert not [line for line in said if "refine the mesh" in line]
+    (line,) = [line for line in said if "wave speed" in line]
+    assert "is 1.010 of the contact wire's wave speed" in line
