@@ -13,7 +13,7 @@ from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.parameters import shorten
-from catenary_fe.system.plausibility import layout_warnings
+from catenary_fe.system.plausibility import layout_warnings, pantograph_warnings
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
 SLOWEST = 5 / 3.6  # [m/s]
@@ -90,6 +90,7 @@ def run_warnings(
     catenary = shape.catenary
     wave_speed = catenary.contact_wire.wave_speed
     found = layout_warnings(catenary)
+    found += dict.fromkeys(line for p in pantographs for line in pantograph_warnings(p, speed))
     if speed > WAVE_SPEED_SHARE * wave_speed:
         found.append(
             f"speed {3.6 * speed:.4g} km/h is {speed / wave_speed:.3f} of the contact wire's wave speed,"

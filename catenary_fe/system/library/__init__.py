@@ -100,7 +100,9 @@ def line(name: str) -> Line:
 
 
 def names(kind: str) -> list[str]:
-    """Names in the library; kind is 'wires', 'pantographs' or 'lines'."""
+    """Names in the library; kind is 'wires', 'pantographs' or 'lines'. Raises InputError for another one."""
+    if kind not in ("wires", "pantographs", "lines"):
+        raise InputError(f"library: kind = {shorten(kind)}: must be 'wires', 'pantographs' or 'lines'")
     return list(_records(kind))
 
 
