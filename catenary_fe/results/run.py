@@ -155,6 +155,15 @@ class Run:
         """
         return [self._statistics(i, spans, filter) for i in range(self.data.sizes["pantograph"])]
 
+    def statistics_by_span(self, filter: FilterKind = "causal") -> dict[int, list[ForceStatistics]]:
+        """Statistics of each pantograph's contact force, by the number of each span that all of them passed.
+
+        Single spans scatter about those of the evaluated ones: by how much tells what these are worth.
+        """
+        x, supports = self.data["position"].values, self.data["support_position"].values
+        inside = (supports[:-1] >= x[:, 0].max()) & (supports[1:] <= x[:, -1].min())
+        return {n: self.contact_force_statistics([n], filter) for n in (np.flatnonzero(inside) + 1).tolist()}
+
     def figures(self, filter: FilterKind = "causal") -> list[ForceStatistics | None]:
         """Statistics over the evaluated spans; None where a partial run ended before them."""
         return [

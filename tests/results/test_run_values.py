@@ -127,6 +127,20 @@ def test_figures_are_of_the_filtered_force_in_the_spans():
     assert run.contact_force_statistics([2, 3, 4])[0].contact_loss == pytest.approx(0.2 / 3, rel=0.01)
 
 
+def test_statistics_span_by_span_are_of_whole_spans():
+    """Of 300 m two pantographs run from 50 and 5 m to 300 and 255 m: spans 2 to 5 are passed by both."""
+    run = made_run(None, *TWO, start=(50.0, 5.0), times=2501)
+    x = run.data["position"].values
+    run = made_run(None, *TWO, start=(50.0, 5.0), times=2501, contact_force=100.0 + x // 50)
+    found = run.statistics_by_span("zero-phase")
+    assert list(found) == [2, 3, 4, 5]
+    for span, (first, second) in found.items():
+        assert (first.pantograph, second.pantograph) == ("first", "second")
+        assert first == run.contact_force_statistics([span], "zero-phase")[0]
+        assert second.mean == pytest.approx(99 + span, abs=0.1)
+    assert list(made_run(None, start=(50.1,), times=2001).statistics_by_span()) == [3, 4, 5]
+
+
 def test_a_summary_is_in_display_units():
     uplift = np.zeros((7, 2001))
     uplift[3] = 0.04

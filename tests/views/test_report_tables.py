@@ -3,7 +3,14 @@
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.views.report.tables import Table, _line_table, input_tables, schedule_table, slack_table
+from catenary_fe.views.report.tables import (
+    Table,
+    _line_table,
+    input_tables,
+    schedule_table,
+    slack_table,
+    span_table,
+)
 
 
 def rows(table):
@@ -36,6 +43,14 @@ def test_all_inputs_and_sources(short_run):
         short_run.data.attrs["input_sha256"],
     ):
         assert source in text
+
+
+def test_the_force_span_by_span(short_run):
+    table = span_table(short_run, "causal")
+    assert table.columns == ("span", "mean (N)", "σ (N)", "maximum (N)", "minimum (N)")
+    assert [row[0] for row in table.rows] == ["2", "3"]
+    statistics = short_run.contact_force_statistics([3])[0]
+    assert table.rows[1][1:3] == (f"{statistics.mean:.1f}", f"{statistics.std:.1f}")
 
 
 def test_slack_droppers(short_run):

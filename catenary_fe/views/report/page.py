@@ -56,6 +56,7 @@ def report_page(
         "checks": tables.checks_table(run),
         "motion": motion is not None,
         "statistics": tables.statistics_table(run, filter),
+        "by_span": tables.span_table(run, filter),
         "uplifts": tables.uplift_table(run),
         "slack": tables.slack_table(run),
         "schedule": tables.schedule_table(shape, spans if several else spans[:1]),

@@ -70,6 +70,25 @@ def statistics_table(run: Run, filter: FilterKind) -> Table:
     return Table(caption, ("", *names), cells)
 
 
+def span_table(run: Run, filter: FilterKind) -> Table:
+    """Contact force span by span: how far single spans are from the evaluated ones together."""
+    by_span = run.statistics_by_span(filter)
+    names = [str(name) for name in run.data["pantograph"].values]
+    quantities: tuple[tuple[str, Callable[[ForceStatistics], float]], ...] = (
+        ("mean (N)", lambda s: s.mean),
+        ("σ (N)", lambda s: s.std),
+        ("maximum (N)", lambda s: s.max),
+        ("minimum (N)", lambda s: s.min),
+    )
+    several = len(names) > 1
+    columns = [f"{name}: {text}" if several else text for name in names for text, _ in quantities]
+    cells = [
+        (str(span), *(f"{value(s):.1f}" for s in figures for _, value in quantities))
+        for span, figures in by_span.items()
+    ]
+    return Table("Contact force span by span", ("span", *columns), cells)
+
+
 def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
     """A run's figures against the limits of its system, each with what the limit rests on."""
     cells = [
