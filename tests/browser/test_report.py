@@ -47,7 +47,7 @@ def test_what_a_user_wrote_is_text(browser):
 
 def test_pictures_are_there(browser):
     sizes = browser.execute_script("return [...document.images].map((i) => [i.naturalWidth, i.alt])")
-    assert len(sizes) == 8
+    assert len(sizes) == 9
     assert all(width > 500 and alt for width, alt in sizes)
     inked = browser.execute_script(INKED, "#force-chart canvas, #uplift-chart canvas, #stage")
     assert len(inked) == 3

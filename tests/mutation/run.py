@@ -37,7 +37,7 @@ _STATICS = [
 ]
 _SHAPES = ["tests/results/test_shapes.py"]
 _RUNS = ["tests/results/test_run_values.py", *_SHAPES]
-_FILES = ["tests/results/test_files.py"]
+_FILES = ["tests/results/test_stored_files.py"]
 _TABLES = ["tests/results/test_comparison.py"]
 _CONTACT = "tests/analysis/test_contact_forces.py"
 TARGETS = {  # module: tests that are quick and touch it
