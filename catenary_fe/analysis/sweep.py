@@ -37,6 +37,9 @@ LOST = "lost"  # marks the record of a case that was killed: it is not kept
 _log = logging.getLogger(__name__)
 
 
+RESULTS = 2  # rises when the same inputs give other results: cases that were kept are then computed anew
+
+
 @dataclass(frozen=True, kw_only=True)
 class SweepSettings:
     """What all cases of a sweep have in common."""
@@ -69,6 +72,7 @@ class SweepCase:
             repr((self.speed, self.positions)),
             json.dumps(asdict(settings), sort_keys=True),
             version("catenary_fe"),
+            str(RESULTS),
         ]
         return hashlib.sha256("\n".join(inputs).encode()).hexdigest()[:20]
 
