@@ -30,19 +30,16 @@ class Folder:
     def __init__(self, aside: Path) -> None:
         self.path = aside
         self.kept = False
-        self._written: set[str] = set()
 
     def keep(self) -> None:
         """Move what is written so far into place: what fails later does not take it along."""
-        self._written |= {file.name for file in self.path.iterdir()}
         replace_all(self.path, self.path.parent)
         self.kept = True
 
     def forget(self, *patterns: str) -> None:
-        """Remove what commands made of the folder's results before, now that what was kept are others."""
+        """Remove what commands made of the folder's results before, now that other ones were kept."""
         for file in [file for pattern in patterns for file in self.path.parent.glob(pattern)]:
-            if file.name not in self._written:
-                file.unlink(missing_ok=True)
+            file.unlink(missing_ok=True)
 
     def json(self, name: str, value: Any) -> None:
         """Write a JSON file."""

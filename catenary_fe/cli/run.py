@@ -240,8 +240,8 @@ def forget_partial(folder: Folder) -> None:
 
 
 _OF_A_RUN = (  # of another one they would say what is not so
-    "criteria.png", "energy.png", "report.html", "pantograph_*.toml",
-    "csv/pantograph_*.csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
+    "criteria.png", "energy.png", "report.html",
+    "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
 
 
@@ -254,8 +254,10 @@ def write_run(
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
     folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    another = (folder.path.parent / "run.nc").is_file()
     folder.keep()  # the run is safe whatever happens to its pictures
-    folder.forget(*_OF_A_RUN)
+    if another:
+        folder.forget(*_OF_A_RUN)
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
     folder.picture("contact_force.png", views.plot_contact_force(result))

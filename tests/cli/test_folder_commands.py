@@ -113,7 +113,8 @@ def test_export(capsys, folder, tmp_path):
 def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(capsys, folder, tmp_path):
     place, line = tmp_path / "run", folder.parent / "line.toml"
     shutil.copytree(folder, place)
-    (place / "notes.txt").write_text("mine")
+    for name in ("notes.txt", "pantograph_mine.toml"):
+        (place / name).write_text("mine")
     assert call(capsys, "export", place)[0] == 0
     assert call(capsys, "report", place)[0] == 0
     (place / "criteria.png").write_bytes(b"of the run before")
@@ -123,7 +124,16 @@ def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(ca
     assert left == {
         "run.nc", "summary.json", "layout.toml", "inputs.json", "dropper_schedule.csv", "layout.png",
         "static_shape.png", "contact_force.png", "support_uplift.png", "dropper_forces.png", "notes.txt",
+        "pantograph_mine.toml", "pantograph_1.toml",  # an input, which inputs.json names no more
     }  # fmt: skip
+
+
+def test_a_folder_that_held_no_run_keeps_all_it_has(capsys, folder, tmp_path):
+    (tmp_path / "report.html").write_text("mine")
+    arguments = ["--speed-kmh", "150", "--time-step-ms", "4", "--method", "linearised", "--quiet"]
+    line = folder.parent / "line.toml"
+    assert call(capsys, "run", line, "--pantograph", "EN 50318:2002", *arguments, "-o", tmp_path)[0] == 0
+    assert (tmp_path / "report.html").read_text() == "mine"
 
 
 @pytest.mark.parametrize("command", [["rerun"], ["export"], ["report"]])
