@@ -11,6 +11,13 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import (
+    Installation,
+    curve_pulls,
+    dropper_damping,
+    point_masses,
+    wire_kinds,
+)
 from catenary_fe.fe.laws import dropper_function
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.overlay import Overlay, add_overlay
@@ -19,7 +26,6 @@ from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
     ALONG,
     WireItems,
-    WireLine,
     add_ground_coordinate,
     add_wire,
     anchor_and_tension,
@@ -27,23 +33,6 @@ from catenary_fe.fe.wire import (
 from catenary_fe.system import Catenary, Wire
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Installation:
-    """What the crew sets: how the wires hang, and the droppers, arms and supports that make them do so.
-
-    lines : the wires' static lines, in the order of the mesh
-    dropper_lengths : [m], shape (droppers,), stress-free
-    arm_forces : [N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires where they hang:
-        to the left (in space only) and up; 0 without an arm
-    support_forces : [N], shape (spans + 1, axes - 1), likewise, on the messenger wire
-    """
-
-    lines: tuple[WireLine, ...]
-    dropper_lengths: Floats
-    arm_forces: Floats
-    support_forces: Floats
 
 
 @dataclass(frozen=True)
@@ -118,34 +107,6 @@ class Model:
         return np.array(axial)
 
 
-def dropper_damping(catenary: Catenary) -> Floats:
-    """[N s/m], shape (droppers,): a taut dropper's own damping and its share of the β K damping."""
-    return np.array([d.damping + catenary.damping.beta * d.stiffness for d in catenary.droppers])
-
-
-def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
-    """Each wire's parameters, in the order of the mesh."""
-    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires + [catenary.messenger_wire]
-    if catenary.stitch_wire:
-        lines += [catenary.stitch_wire] * len(mesh.stitch_ends)
-    return lines
-
-
-def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N], for each wire shape (elements,): nominal pull along the track.
-
-    Between a stitch wire's clamps the two wires share the messenger wire's tension.
-    """
-    pulls = [
-        np.full(wire.x.size - 1, kind.tension)
-        for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
-    ]
-    for a, b in mesh.stitch_ends:
-        assert catenary.stitch_wire is not None
-        pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
-    return pulls
-
-
 def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, held: bool = False) -> Model:
     """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie.
 
@@ -176,47 +137,7 @@ def _overlay(
     pull = None
     if wires[0].line.axes == 3 and any(span.curve_radius for span in catenary.spans):
         pull = np.concatenate(curve_pulls(catenary, mesh))
-    return Overlay(masses, hanging, catenary.damping, pull)
-
-
-def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ).
-
-    Seen from a track that curves with the radius R, a straight wire under the tension T bends as if a force
-    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
-    """
-    curvature = np.array([span.curvature for span in catenary.spans])
-    found = []
-    for wire, kind, pulls in zip(
-        mesh.wires, wire_kinds(catenary, mesh), element_pulls(catenary, mesh), strict=True
-    ):
-        middle = (wire.x[:-1] + wire.x[1:]) / 2
-        span = np.searchsorted(catenary.support_positions, middle) - 1
-        found.append(pulls * curvature[span] / kind.mass_per_length)
-    return found
-
-
-def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Floats, Floats]:
-    """[kg], shape (nodes of all wires,) each: masses that move with the nodes, and that weigh on them.
-
-    Of clamps, droppers and arms.
-    """
-    masses = np.zeros(mesh.first_nodes[-1])
-    half = np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
-    below = np.array([d.contact_wire_clamp_mass for d in catenary.droppers])
-    above = np.array([d.messenger_clamp_mass for d in catenary.droppers])
-    np.add.at(masses, mesh.nodes(mesh.lower), below + half)
-    np.add.at(masses, mesh.nodes(mesh.upper), above + half)
-    if catenary.stitch_wire:
-        ends = mesh.first_nodes[mesh.contact_wires] + mesh.stitch_ends
-        masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
-    hanging = masses.copy()
-    for i, support in list(enumerate(catenary.supports))[1:-1]:
-        if arm := support.steady_arm:
-            for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False):
-                masses[first + wire.supports[i]] += arm.tip_mass
-                hanging[first + wire.supports[i]] += arm.hanging_mass
-    return masses, hanging
+    return Overlay(masses, hanging, catenary.damping, pull, installation.balance)
 
 
 def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems], held: bool) -> None:
