@@ -1,4 +1,4 @@
-"""A catenary while it is installed: its wires hung, held at masts and droppers, each under its own tension."""
+"""A catenary while it is installed: wires held at masts and droppers, each under its own tension."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ class Hanging:
             self._read_lateral_arms()
 
     def _residual(self, found: Floats, force: Floats, lengths: Floats) -> Floats:
-        """[N], shape (axes - 1, 2 * nodes), out of balance; where something is held, what holds it is missing."""
+        """[N], shape (axes - 1, 2 * nodes), out of balance; what holds a held place is missing."""
         residual = np.stack([f - self.wires.stiffness @ u for f, u in zip(force, found, strict=True)])
         residual[-1] -= self._arm_springs() @ found[-1]
         span = self.spread(found)
@@ -235,7 +235,9 @@ class Hanging:
         from scipy.sparse.linalg import splu
 
         size = 2 * self.wires.nodes
-        K = block_diag([*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs()])
+        K = block_diag(
+            [*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs()]
+        )
         span = self.spread()
         tension = self.tensions(lengths, span)
         blocks = spring_blocks(span[:, 1:], tension, np.where(tension > 0, self.stiffness, 0.0))

@@ -33,9 +33,7 @@ def installed_lines(wires: TautWires, points: Floats, inclinations: Floats) -> t
     pulls = np.split(wires.tension, np.cumsum([w.x.size - 1 for w in mesh.wires])[:-1])
     lines = [
         WireLine.through(kind, points[a:b], inclinations[a:b], pull)
-        for kind, a, b, pull in zip(
-            wire_kinds(catenary, mesh), ends[:-1], ends[1:], pulls, strict=True
-        )
+        for kind, a, b, pull in zip(wire_kinds(catenary, mesh), ends[:-1], ends[1:], pulls, strict=True)
     ]
     slopes, lengths = _settled(wires, points, lines)
     parts = zip(ends[:-1], ends[1:], np.split(lengths, np.cumsum([p.size for p in pulls])[:-1]), strict=True)

@@ -1,15 +1,16 @@
-"""The line under static forces on its contact wire: droppers go slack, wires and arms move as far as they do."""
+"""The line under static forces on its contact wire, in large motions and with droppers that go slack."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.equilibrium.shape import Shape
 from catenary_fe.fe.cable import Cables, hermite, inner_forces, tangent_blocks
-from catenary_fe.fe.system import Springs, System, assemble, spring_blocks
+from catenary_fe.fe.system import System, assemble, spring_blocks
 from catenary_fe.system import SolverError
 
 Floats = NDArray[np.float64]
@@ -19,8 +20,8 @@ Progress = Callable[[float], None]
 _ITERATIONS, _LEAST_STEP, _LOAD_STEPS = 60, 1e-4, 20
 _SETTLED = 1e-9  # of the largest force on a coordinate; rounding of EA ε leaves 1e-5 N
 _FLOOR = 1e-4  # [N]
-_WINDOW = 2  # spans to both sides of a force, beyond which the line answers it linearly: the error is < 1e-5
-_CORRECTIONS, _SAME = 12, 1e-6  # of a lift: change of the last correction
+_WINDOW = 1  # spans to both sides of a force, beyond which the line answers it linearly: the error is < 1e-5
+_CORRECTIONS, _SAME = 12, 1e-4  # of a lift: change of the last correction
 
 
 class LoadedLine:
@@ -69,9 +70,9 @@ class LoadedLine:
             return moved
         what = ", ".join(f"{f:g} N at {x:g} m" for x, f in zip(positions, forces, strict=True))
         raise SolverError(
-            f"static load ({what}): no static equilibrium found, neither at once nor in {_LOAD_STEPS} steps of"
-            f" the load: {np.abs(residual).max():.3g} N are left {self._place(residual)}; try a smaller force,"
-            " and look there for stiffnesses and tensions that are far from usual values"
+            f"static load ({what}): no static equilibrium found, neither at once nor in {_LOAD_STEPS} steps"
+            f" of the load: {np.abs(residual).max():.3g} N are left {self._place(residual)}; try a smaller"
+            " force, and look there for stiffnesses and tensions that are far from usual values"
         )
 
     def _newton(self, moved: Floats, load: Floats) -> tuple[Floats, Floats | None]:
@@ -142,61 +143,74 @@ class _AtRest:
 
         self.line, self.system = line, line.system
         self.stiffness = self.system.tangent(np.zeros(self.system.place.size))
-        self._factor = splu(
-            self.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}
+        self._factor = splu(  # in the order of the stations the factor is narrow
+            self.stiffness.tocsc(),
+            permc_spec="NATURAL",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
         )
-        self._known: dict[tuple[bool, int], tuple[Floats, Floats]] = {}
+        self._columns: dict[tuple[bool, int], Floats] = {}
 
     def lifts(self, positions: Floats, force: float, near: Floats) -> Floats:
-        """[m], shape (points,), places between which the line answers otherwise than at rest: ``near`` [m]."""
+        """[m], shape (points,); near : [m] between which wires and springs are taken as they are."""
         system, line = self.system, self.line
         around = _Surroundings(line, near)
         free = np.stack([system.gather(line.load([x], [force])) for x in positions])
         moved = self._factor.solve(free.T).T
-        lifts = (free * moved).sum(axis=1) / force
+        lifts: Floats = (free * moved).sum(axis=1) / force
         for _ in range(_CORRECTIONS):
             before = lifts
-            spread = np.stack([system.spread(row) for row in moved])
+            spread = system.spread(moved)
             residual = free - (self.stiffness @ moved.T).T + around.extra(spread)
-            for i, step in enumerate(self._factor.solve(residual.T).T):
-                moved[i] += self._updated(step, around.changes(spread[i]))
+            moved = moved + self._updated(self._factor.solve(residual.T).T, around.changes(spread))
             lifts = (free * moved).sum(axis=1) / force
             if np.abs(lifts - before).max() <= _SAME * np.abs(lifts).max():
                 return lifts
         whole = [system.gather(line.solve([x], [force])) for x in positions]
         return np.array([f @ u / force for f, u in zip(free, whole, strict=True)])
 
-    def _updated(self, answer: Floats, changes: list[tuple[Springs, int, Floats]]) -> Floats:
-        """An answer of the line at rest, shape (free,), as that of the line with changed springs.
+    def _updated(self, answers: Floats, changes: dict[tuple[bool, int], Floats]) -> Floats:
+        """Answers of the line at rest, shape (points, free), as those of the line with changed springs.
 
-        changes : springs, number among them, and change of stiffness [N/m], shape (axes, axes)
+        changes : of stiffness [N/m], shape (points, axes, axes), by spring
         """
         if not changes:
-            return answer
-        axes = self.system.axes
-        parts = [self._motion(springs, number) for springs, number, _ in changes]
-        rows, columns = np.concatenate([r for r, _ in parts]), np.concatenate([c for _, c in parts], axis=1)
-        blocks = np.stack([block for _, _, block in changes])
+            return answers
+        from scipy.sparse import vstack
+
+        points, axes = len(answers), self.system.axes
+        rows = vstack([self._span_change(*spring) for spring in changes]).tocsr()
+        columns = np.concatenate([self._column(*spring) for spring in changes], axis=1)
+        blocks = np.stack(list(changes.values()), axis=1)
 
         def changed(values: Floats) -> Floats:
-            of_each = values.reshape(len(changes), axes, -1)
-            return np.einsum("sij,sjk->sik", blocks, of_each).reshape(len(rows), -1)
+            of_each = values.reshape(len(values), blocks.shape[1], axes, -1)
+            product: Floats = np.einsum("psij,psjk->psik", blocks, of_each)
+            return product.reshape(points, rows.shape[0], -1)
 
-        inner = np.eye(len(rows)) + changed(rows @ columns)
-        updated: Floats = answer - columns @ np.linalg.solve(inner, changed(rows @ answer))[:, 0]
+        inner = np.eye(rows.shape[0]) + changed((rows @ columns)[None])
+        loads = np.linalg.solve(inner, changed((rows @ answers.T).T))[:, :, 0]
+        updated: Floats = answers - loads @ columns.T
         return updated
 
-    def _motion(self, springs: Springs, number: int) -> tuple[Floats, Floats]:
-        """How a spring's span changes with the free coordinates, shape (axes, free), and the line's answers."""
-        key = springs.pulls_only, number
-        if key not in self._known:
-            axes, rows = self.system.axes, []
-            for at in springs.index()[number].reshape(-1, axes).T:
-                row = np.zeros(self.system.place.size)
-                row[at] = [-1.0, 1.0][: at.size]
-                rows.append(self.system.gather(row))
-            self._known[key] = np.array(rows), self._factor.solve(np.array(rows).T)
-        return self._known[key]
+    def _span_change(self, dropper: bool, number: int) -> Any:
+        """Sparse, shape (axes, free): of a spring's span with the free coordinates."""
+        from scipy.sparse import csr_matrix
+
+        axes = self.system.axes
+        springs = self.system.droppers if dropper else self.system.arms
+        place = self.system.place[springs.index()[number]]
+        signs = np.repeat([-1.0, 1.0][: place.size // axes], axes)
+        moves = place >= 0
+        entries = signs[moves], (np.arange(place.size)[moves] % axes, place[moves])
+        return csr_matrix(entries, shape=(axes, self.system.size))
+
+    def _column(self, dropper: bool, number: int) -> Floats:
+        """Shape (free, axes): answers of the line to forces that open a spring's span."""
+        if (dropper, number) not in self._columns:
+            row = self._span_change(dropper, number)
+            self._columns[dropper, number] = self._factor.solve(row.toarray().T)
+        return self._columns[dropper, number]
 
 
 class _Surroundings:
@@ -229,28 +243,27 @@ class _Surroundings:
         found = _summed(linear + self.inner.reshape(self.index.shape) - inner, self.index, size)
         for springs in (self.droppers, self.arms):
             index, blocks = springs.index(), springs.blocks(system.reference, taut=True)
-            now = np.stack([springs.forces(system.reference + row) for row in moved])
             linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
+            now = springs.forces(system.reference + moved)
             found += _summed(now - springs.forces(system.reference) + linear, index, size)
-        return np.stack([system.gather(row) for row in found])
+        return system.gather(found)
 
-    def changes(self, moved: Floats) -> list[tuple[Springs, int, Floats]]:
-        """Slack droppers and turned arms, with their change of stiffness [N/m], shape (axes, axes).
+    def changes(self, moved: Floats) -> dict[tuple[bool, int], Floats]:
+        """Slack droppers and turned arms: change of stiffness [N/m], shape (points, axes, axes).
 
-        moved : shape (all,)
+        moved : shape (points, all). Keys are whether it is a dropper, and its number
         """
-        system, found = self.system, []
-        for springs, of_all, numbers in zip(
-            (self.droppers, self.arms), (system.droppers, system.arms), self._numbers, strict=True
-        ):
-            rest, now = springs.span(system.reference), springs.span(system.reference + moved)
-            change = -spring_blocks(rest, springs.tension(rest), springs.stiffness)
+        reference, found = self.system.reference, {}
+        for springs, numbers in zip((self.droppers, self.arms), self._numbers, strict=True):
+            rest = springs.span(reference)
+            at_rest = spring_blocks(rest, springs.tension(rest), springs.stiffness)
+            now, tension = springs.span(reference + moved), springs.tension(rest)
             if springs.pulls_only:
-                different = springs.tension(now) <= 0
-            else:
-                change += spring_blocks(now, springs.tension(now), springs.stiffness)
-                different = np.ones(numbers.size, dtype=bool)
-            found += [(of_all, int(numbers[i]), change[i]) for i in np.flatnonzero(different)]
+                change = -at_rest * (springs.tension(now) <= 0)[:, :, None, None]
+            else:  # its axial force changes little: it turns
+                change = spring_blocks(now, tension, springs.stiffness) - at_rest
+            for i in np.flatnonzero(change.any(axis=(0, 2, 3))):
+                found[springs.pulls_only, int(numbers[i])] = change[:, i]
         return found
 
 
@@ -259,4 +272,4 @@ def _summed(values: Floats, index: Integers, size: int) -> Floats:
     points = len(values)
     place = (size * np.arange(points)[:, None] + index.ravel()).ravel()
     summed = np.bincount(place, values.reshape(points, -1).ravel(), minlength=points * size)
-    return summed.reshape(points, size)
+    return np.asarray(summed, dtype=float).reshape(points, size)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.fe.installation import Installation
+from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.system import Catenary, InputError
 from catenary_fe.system.parameters import shorten
 

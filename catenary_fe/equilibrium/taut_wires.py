@@ -154,7 +154,8 @@ class TautWires:
     def load(self, per_length: Floats) -> Floats:
         """Shape (2 * nodes,): of a load [N/m] on each element, shape (elements,)."""
         values = exact_load(self.tension, self.bending_stiffness, self.length) * per_length[:, None]
-        return np.bincount(self.index.ravel(), values.ravel(), minlength=2 * self.nodes)
+        summed = np.bincount(self.index.ravel(), values.ravel(), minlength=2 * self.nodes)
+        return np.asarray(summed, dtype=float)
 
     @cached_property
     def idle(self) -> NDArray[np.bool_]:
@@ -167,7 +168,7 @@ class TautWires:
         return TautProblem(K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle)
 
     def slopes(self, found: Floats, per_length: Floats) -> Floats:
-        """Shape (nodes,): slopes of a solution under a load [N/m]; where a string kinks, of both sides the mean.
+        """Shape (nodes,): slopes under a load [N/m]; where a string kinks, the mean of both sides.
 
         found : shape (2 * nodes,)
         """

@@ -85,8 +85,8 @@ class Installation:
     arm_forces : [N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires where they hang:
         to the left (in space only) and up; 0 without an arm
     support_forces : [N], shape (spans + 1, axes - 1), likewise, on the messenger wire
-    balance : [N], shape (coordinates of all nodes,), constant forces that keep the wires on these lines. Cubic
-        elements round a kink, which the wire itself has at clamps and supports: without these forces they
+    balance : [N], shape (coordinates of all nodes,), constant forces that keep the wires on these lines.
+        Cubic elements round the kinks that a wire has at clamps and supports: without these forces they
         would hang elsewhere, by millimetres. They vanish with the elements' length
     """
 

@@ -21,16 +21,15 @@ from catenary_fe.fe.installation import (
 from catenary_fe.fe.laws import dropper_function
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.overlay import Overlay, add_overlay
-from catenary_fe.fe.registration import Held, add_arms, add_supports
+from catenary_fe.fe.registration import add_arms, add_supports
 from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
-    ALONG,
     WireItems,
     add_ground_coordinate,
     add_wire,
     anchor_and_tension,
 )
-from catenary_fe.system import Catenary, Wire
+from catenary_fe.system import Catenary
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +44,6 @@ class Model:
     droppers : numbers of the dropper connectors
     dropper_lengths : [m], stress-free
     ground : number of a coordinate marker that never moves
-    held : constraints that hold the wires, in a model of the installation
     """
 
     mbs: Any
@@ -56,7 +54,6 @@ class Model:
     droppers: list[int]
     dropper_lengths: Floats
     ground: int
-    held: Held
 
     @property
     def contact(self) -> WireItems:
@@ -96,10 +93,6 @@ class Model:
             for wire, a, b in zip(self.wires, ends[:-1], ends[1:], strict=True)
         ]
 
-    def held_force(self, constraint: int) -> float:
-        """[N] with which a constraint holds its wire at the current state."""
-        return float(self.mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
-
     def dropper_forces(self) -> Floats:
         """[N], shape (droppers,), tension at the current state."""
         force = exu.OutputVariableType.Force
@@ -107,13 +100,8 @@ class Model:
         return np.array(axial)
 
 
-def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, held: bool = False) -> Model:
-    """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie.
-
-    held : instead of springs, constraints hold the messenger wire at its supports and the contact wire at
-        the arms that shall give it its design height: their forces are what an installation sets. Stitch
-        wires are pulled at one end, as by a winch.
-    """
+def build_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> Model:
+    """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie."""
     mbs = new_system()
     kinds = wire_kinds(catenary, mesh)
     wires = tuple(add_wire(mbs, kind, line) for kind, line in zip(kinds, installation.lines, strict=True))
@@ -121,13 +109,13 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     for wire, items in zip(kinds[: mesh.first_stitch], wires, strict=False):
         anchor_and_tension(mbs, items, ground, wire)
     overlay = add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
-    _clamp_stitch_wires(mbs, mesh, wires, held)
+    _clamp_stitch_wires(mbs, mesh, wires)
     droppers = _add_droppers(mbs, catenary, mesh, wires, installation.dropper_lengths)
     contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
-    arms = add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces, held)
-    supports = add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces, held)
+    add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces)
+    add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces)
     lengths = installation.dropper_lengths
-    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground, Held(arms, supports))
+    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground)
 
 
 def _overlay(
@@ -140,26 +128,17 @@ def _overlay(
     return Overlay(masses, hanging, catenary.damping, pull, installation.balance)
 
 
-def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems], held: bool) -> None:
-    """Both ends move with the messenger wire.
-
-    held : the last end slides along the track under the wire's tension, by which its length is found; ends
-        that lie a little apart come together
-    """
+def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems]) -> None:
+    """Both ends move with the messenger wire."""
     messenger = wires[mesh.contact_wires]
     for stitch, ends in zip(wires[mesh.first_stitch :], mesh.stitch_ends, strict=True):
-        last = len(stitch.nodes) - 1
-        for node, clamp in zip((0, last), ends.tolist(), strict=True):
-            apart = messenger.line.points[clamp] - stitch.line.points[node] if held else np.zeros(3)
+        for node, clamp in zip((0, len(stitch.nodes) - 1), ends.tolist(), strict=True):
             for axis in range(stitch.line.axes):
-                above = messenger.coordinate_marker(mbs, clamp, axis)
-                below = stitch.coordinate_marker(mbs, node, axis)
-                if held and (node, axis) == (last, ALONG):
-                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=above, load=-stitch.kind.tension))
-                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=below, load=stitch.kind.tension))
-                    continue
-                markers, offset = [above, below], float(apart[axis])
-                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset))
+                markers = [
+                    messenger.coordinate_marker(mbs, clamp, axis),
+                    stitch.coordinate_marker(mbs, node, axis),
+                ]
+                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
 
 
 def _add_droppers(

@@ -2,14 +2,15 @@
 
     M q̈ + D q̇ + f_cables(q) + f_droppers(q, q̇) + f_links(q) + K_ground q = f
 
-q are displacements from the lines on which the wires were installed. "All" coordinates are those of the wires'
-nodes, of each its point and then its slope; "free" ones are those that move: what is held is left out, and the
-ends of stitch wires share the messenger wire's coordinates.
+q are displacements from the lines on which the wires were installed. "All" coordinates are those of the
+wires' nodes, of each its point and then its slope; "free" ones are those that move: what is held is left out,
+and the ends of stitch wires share the messenger wire's coordinates.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -55,8 +56,8 @@ class Springs:
 
     def only(self, kept: NDArray[np.bool_]) -> Springs:
         """Some of them, shape (springs,)."""
-        parts = (self.first, self.last, self.pivot, self.length, self.stiffness, self.damping)
-        return Springs(*(part[kept] for part in parts), self.pulls_only)
+        arrays = {name: value[kept] for name, value in vars(self).items() if name != "pulls_only"}
+        return replace(self, **arrays)
 
     def index(self) -> Integers:
         """Shape (springs, axes or 2 * axes): coordinates of the lower, then of the upper end."""
@@ -65,33 +66,37 @@ class Springs:
         return np.hstack([lower, self.last[:, None] + axes]) if self.pulls_only else lower
 
     def span(self, total: Floats) -> Floats:
-        """[m], shape (springs, axes), from the lower to the upper end."""
+        """[m], shape (..., springs, axes), from the lower to the upper end; total : shape (..., all)."""
         axes = np.arange(self.pivot.shape[1])
-        upper = total[self.last[:, None] + axes] if self.pulls_only else self.pivot
-        return upper - total[self.first[:, None] + axes]
+        upper = total[..., self.last[:, None] + axes] if self.pulls_only else self.pivot
+        span: Floats = upper - total[..., self.first[:, None] + axes]
+        return span
 
     def tension(self, span: Floats) -> Floats:
-        """[N], shape (springs,)."""
-        tension = self.stiffness * (np.linalg.norm(span, axis=1) - self.length)
+        """[N], shape (..., springs)."""
+        tension: Floats = self.stiffness * (np.linalg.norm(span, axis=-1) - self.length)
         return np.maximum(tension, 0.0) if self.pulls_only else tension
 
     def forces(self, total: Floats) -> Floats:
-        """[N], as :meth:`index`: on the points."""
+        """[N], shape (..., *index): on the points."""
         span = self.span(total)
-        pull = (self.tension(span) / np.linalg.norm(span, axis=1))[:, None] * span
-        return np.hstack([pull, -pull]) if self.pulls_only else pull
+        pull: Floats = (self.tension(span) / np.linalg.norm(span, axis=-1))[..., None] * span
+        return np.concatenate([pull, -pull], axis=-1) if self.pulls_only else pull
 
     def blocks(self, total: Floats, *, taut: bool) -> Floats:
         """Stiffness [N/m], shape (springs, m, m), over :meth:`index`.
 
         taut : slack droppers count as just taut, not as gone
         """
-        span = self.span(total)
+        block = self.span_blocks(self.span(total), taut=taut)
+        return np.block([[block, -block], [-block, block]]) if self.pulls_only else block
+
+    def span_blocks(self, span: Floats, *, taut: bool = False) -> Floats:
+        """Stiffness [N/m], shape (springs, axes, axes), against a change of the span [m]."""
         stiffness = self.stiffness
         if self.pulls_only and not taut:
             stiffness = np.where(np.linalg.norm(span, axis=1) > self.length, stiffness, 0.0)
-        block = spring_blocks(span, self.tension(span), stiffness)
-        return np.block([[block, -block], [-block, block]]) if self.pulls_only else block
+        return spring_blocks(span, self.tension(span), stiffness)
 
     def energy(self, total: Floats) -> float:
         """[J]"""
@@ -99,16 +104,16 @@ class Springs:
 
 
 def spring_blocks(span: Floats, tension: Floats, stiffness: Floats) -> Floats:
-    """Stiffness [N/m] of springs at one end, shape (springs, axes, axes).
+    """Stiffness [N/m] of springs at one end, shape (..., springs, axes, axes).
 
-    span : [m], shape (springs, axes), from end to end
-    tension, stiffness : [N], [N/m], shape (springs,)
+    span : [m], shape (..., springs, axes), from end to end
+    tension, stiffness : [N], [N/m], shape (..., springs) or (springs,)
     """
-    now = np.linalg.norm(span, axis=1)
-    direction = span / now[:, None]
-    axial = direction[:, :, None] * direction[:, None, :]
-    across = (tension / now)[:, None, None] * (np.eye(span.shape[1]) - axial)
-    blocks: Floats = stiffness[:, None, None] * axial + across
+    now = np.linalg.norm(span, axis=-1)
+    direction = span / now[..., None]
+    axial = direction[..., :, None] * direction[..., None, :]
+    across = (tension / now)[..., None, None] * (np.eye(span.shape[-1]) - axial)
+    blocks: Floats = stiffness[..., None, None] * axial + across
     return blocks
 
 
@@ -155,17 +160,26 @@ class System:
         return self.axes == 3
 
     def spread(self, free: Floats) -> Floats:
-        """From values of the free coordinates to all, 0 where they cannot move."""
-        spread: Floats = np.append(free, 0.0)[self.place]
+        """From values of the free coordinates, shape (..., free), to all, 0 where they cannot move."""
+        spread: Floats = np.where(self.place >= 0, free[..., self.place], 0.0)
         return spread
 
     def gather(self, values: Floats) -> Floats:
-        """From forces on all coordinates to the free ones."""
-        moves = self.place >= 0
-        return np.bincount(self.place[moves], values[moves], minlength=self.size)
+        """From forces on all coordinates, shape (..., all), to the free ones."""
+        gathered: Floats = (self.transformation.T @ values.T).T
+        return gathered
+
+    @cached_property
+    def transformation(self) -> Any:
+        """Sparse, shape (all, free): T with q = T x."""
+        from scipy.sparse import csr_matrix
+
+        moves = np.flatnonzero(self.place >= 0)
+        entries = np.ones(moves.size), (moves, self.place[moves])
+        return csr_matrix(entries, shape=(self.place.size, self.size))
 
     def out_of_balance(self, moved: Floats) -> Floats:
-        """[N], shape (all,): constant forces less those with which the line answers displacements ``moved``."""
+        """[N], shape (all,): constant forces less what the line answers to displacements ``moved``."""
         total = self.reference + moved
         index = self._elements()
         residual = self.force - self.ground_stiffness * moved
@@ -281,7 +295,7 @@ def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Inst
 
 
 class _Held:
-    """What holds the wires at the masts and the line's ends: springs and preloads, fixed coordinates, bars."""
+    """What holds the wires at masts and ends: springs and preloads, fixed coordinates, bars."""
 
     def __init__(self, catenary: Catenary, mesh: Mesh, installation: Installation, size: int) -> None:
         self.catenary, self.mesh, self.installation = catenary, mesh, installation
@@ -354,9 +368,7 @@ class _Held:
                 if i in (0, last) or stiffness is None:
                     self.fixed[at] = True
                 else:
-                    self._spring(
-                        at, stiffness, damping, float(self.installation.support_forces[i, axis - 1])
-                    )
+                    self._spring(at, stiffness, damping, float(self.installation.support_forces[i, axis - 1]))
 
     def bars(self) -> Springs:
         """The steady arms that are bars."""

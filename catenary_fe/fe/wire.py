@@ -84,12 +84,10 @@ def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire:
     mbs.AddLoad(eii.LoadCoordinate(markerNumber=end, load=wire.tension))
 
 
-def hold(
-    mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int, offset: float = 0.0
-) -> int:
-    """Hold a coordinate ``offset`` from where the line has it; returns the number of the constraint."""
+def hold(mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int) -> None:
+    """Hold a coordinate where the line has it."""
     markers = [ground, items.coordinate_marker(mbs, node, axis)]
-    return int(mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset)))
+    mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
 
 
 def add_ground_coordinate(mbs: exu.MainSystem) -> int:
