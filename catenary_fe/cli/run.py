@@ -15,6 +15,7 @@ from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.schedules import write_schedules
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -253,7 +254,7 @@ def write_run(
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
-    folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    write_schedules(folder, shape)
     another = (folder.path.parent / "run.nc").is_file()
     folder.keep()  # the run is safe whatever happens to its pictures
     if another:
