@@ -241,7 +241,7 @@ def forget_partial(folder: Folder) -> None:
 
 
 _OF_A_RUN = (  # of another one they would say what is not so
-    "criteria.png", "energy.png", "report.html",
+    "criteria.png", "energy.png", "plan.png", "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
 
@@ -251,6 +251,7 @@ def write_run(
 ) -> None:
     """Results, pictures and summary of a run; its criteria where it was judged."""
     from catenary_fe import views
+    from catenary_fe.views.plan import head_width
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
@@ -261,6 +262,9 @@ def write_run(
         folder.forget(*_OF_A_RUN)
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
+    if shape.catenary.is_spatial:
+        width = head_width(result.pantographs)
+        folder.picture("plan.png", views.plot_plan(shape, head_width=width))
     folder.picture("contact_force.png", views.plot_contact_force(result))
     folder.picture("support_uplift.png", views.plot_support_uplift(result))
     folder.picture("dropper_forces.png", views.plot_dropper_forces(result))

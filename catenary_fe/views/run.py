@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.views.style import (
     DROPPER,
+    OTHERS,
     PANTOGRAPHS,
     SLACK,
     finish,
     headroom,
+    label_row,
+    mark_spans,
     mark_supports,
     new_axes,
     note_failed,
+    sequence,
 )
+
+Floats = NDArray[np.float64]
+_NAMED = 12  # supports that a legend has room for
 
 
 def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -23,8 +32,7 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax, (11.0, 4.4))
     supports = run.data["support_position"].values
     mark_supports(ax, supports)
-    spans = run.evaluated_spans
-    ax.axvspan(supports[min(spans) - 1], supports[max(spans)], color="#f3efe2", label="evaluated spans")
+    mark_spans(ax, supports, run.evaluated_spans)
     filtered = run.filtered_contact_force()
     single = filtered.shape[0] == 1
     figures, names = run.figures(), run.data["pantograph"].values
@@ -62,23 +70,45 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
 
 
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
-    """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour."""
-    ax = new_axes(ax)
+    """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour.
+
+    ax : for the curves alone; unset: those of a new figure, with a bar for each support's largest uplift
+
+    Returns the axes of the curves.
+    """
     uplift = 1e3 * run.data["support_uplift"].values
-    evaluated = sorted({s for n in run.evaluated_spans for s in (n - 1, n)})
-    for i, values in enumerate(uplift[1:-1], start=1):
-        if i not in evaluated:
-            ax.plot(run.time, values, color="#c9c9c9", linewidth=0.8)
-    for n, i in enumerate(evaluated):
-        colour = PANTOGRAPHS[n % len(PANTOGRAPHS)]
-        name = f"support {i + 1}: at most {uplift[i].max():.1f} mm"
-        ax.plot(run.time, uplift[i], color=colour, linewidth=1.3, label=name)
-    ax.plot([], [], color="#c9c9c9", linewidth=0.8, label="other supports")
-    rows = 1 + len(evaluated) // 4
-    headroom(ax, 0.08 + 0.1 * rows)
+    inner = range(1, uplift.shape[0] - 1)
+    evaluated = [i for i in inner if {i, i + 1} & set(run.evaluated_spans)]
+    colours = dict.fromkeys(inner, OTHERS) | dict(zip(evaluated, sequence(len(evaluated)), strict=True))
+    if ax is None:
+        figure = Figure(figsize=(11.0, 6.2), layout="constrained")
+        ax, bars = figure.subplots(2, 1, height_ratios=(3, 2))
+        _uplift_bars(bars, uplift.max(axis=1), colours)
+    for i in sorted(inner, key=evaluated.__contains__):
+        name = f"support {i + 1}: at most {uplift[i].max():.1f} mm" if i in evaluated else None
+        if len(evaluated) > _NAMED and uplift[i].max() < uplift[evaluated].max():
+            name = None
+        ax.plot(run.time, uplift[i], color=colours[i], linewidth=1.3 if i in evaluated else 0.8, label=name)
+    if len(evaluated) < len(inner):
+        ax.plot([], [], color=OTHERS, linewidth=0.8, label="other supports")
+    headroom(ax, 0.12 + 0.1 * (min(len(evaluated), _NAMED) // 4))
+    ax.margins(x=0.01)
     ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
     title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: uplift at the supports"
     return note_failed(finish(ax, "time (s)", "uplift (mm)", title), run.failed_checks)
+
+
+def _uplift_bars(ax: Axes, largest: Floats, colours: dict[int, str]) -> None:
+    """The largest uplift [mm] of each support, in the colour of its curve."""
+    numbers = np.array([i + 1 for i in colours])
+    heights = largest[numbers - 1]
+    ax.bar(numbers, heights, color=list(colours.values()), width=0.75)
+    ax.set_xlim(numbers[0] - 0.6, numbers[-1] + 0.6)
+    ax.set_ylim(0, 1.25 * max(heights.max(), 1e-6))
+    ax.set_xticks(numbers[:: -(-numbers.size // 40)])
+    label_row(ax, numbers, heights, [f"{height:.1f}" for height in heights], above=2)
+    finish(ax, "support", "largest uplift (mm)", "Largest uplift of each support; evaluated ones in colour")
+    ax.grid(visible=False, axis="x")
 
 
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
