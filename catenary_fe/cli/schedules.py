@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from catenary_fe.cli.terminal import print_table
-from catenary_fe.results.csv_files import cell, decimals_of
+from catenary_fe.results.csv_files import cell, common_name, decimals_of
 
 if TYPE_CHECKING:
     from catenary_fe.cli.folder import Folder
@@ -55,21 +55,16 @@ def _print(title: str, rows: Sequence[Mapping[str, Any]], wanted: Sequence[str])
     columns = [
         key
         for key in (rows[0] if rows else ())
-        if _common(key) in wanted and any(row[key] is not None for row in rows)
+        if common_name(key) in wanted and any(row[key] is not None for row in rows)
     ]
-    columns.sort(key=lambda key: wanted.index(_common(key)))
+    columns.sort(key=lambda key: wanted.index(common_name(key)))
     table = [
         ["" if row[key] is None else cell(row[key], decimals_of(key)) for key in columns] for row in rows
     ]
     print_table(title, [_heading(key) for key in columns], table)
 
 
-def _common(key: str) -> str:
-    """A column's name without the number of the contact wire."""
-    return key.replace("_1_", "_").replace("_2_", "_")
-
-
 def _heading(key: str) -> str:
-    common = _common(key)
+    common = common_name(key)
     number = key[len(common) :] and ("right " if "_1_" in key else "left ")
     return number + _SHORT.get(common, common.replace("_", " "))

@@ -28,6 +28,11 @@ def decimals_of(column: str, decimals: Mapping[str, int] = DECIMALS) -> int | No
     return decimals[max(units, key=len)] if units else None
 
 
+def common_name(column: str) -> str:
+    """A column's name without the number of its contact wire."""
+    return column.replace("_1_", "_").replace("_2_", "_")
+
+
 def cell(value: Any, decimals: int | None) -> Any:
     """A value as a table holds it; what is no decimal number stays as it is."""
     if not isinstance(value, float | np.floating):

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.system import target_mean_force
 from catenary_fe.system.current_collection import DEVIATION_SHARE
+from catenary_fe.system.variation import unit_of
 from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed
 
 Rows = Sequence[Mapping[str, Any]]
@@ -89,11 +90,16 @@ def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, str, list[
 
 def _named(key: str, value: Any) -> str:
     text = f"{value:g}" if isinstance(value, float) else str(value)
-    return text if key == "pantograph" else f"{_title(key)} {text}"
+    if key == "pantograph":
+        return text
+    name, _, unit = _title(key).partition(" (")
+    return f"{name} {text} {unit.removesuffix(')')}".rstrip()
 
 
 def _title(key: str) -> str:
-    return {"speed_kmh": "speed (km/h)"}.get(key, key.replace("_", " "))
+    unit = "km/h" if key == "speed_kmh" else unit_of(key)
+    name = "speed" if key == "speed_kmh" else key.replace("_", " ").replace(".", ", ")
+    return f"{name} ({unit})" if unit else name
 
 
 def _column(curve: Rows, key: str) -> Any:

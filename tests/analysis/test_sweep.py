@@ -92,7 +92,7 @@ def test_the_command_runs_all_combinations(layout, tmp_path, capsys):
     assert main([*arguments, *vary]) == 0
     rows = table(out)
     assert len(rows) == 8
-    assert {(r["speed_kmh"], r["contact_wire.tension"]) for r in rows} == {
+    assert {(r["speed_kmh"], r["contact_wire.tension [N]"]) for r in rows} == {
         (v, t) for v in ("200", "220", "240", "260") for t in ("20000", "24000")
     }
     assert all(not r["error"] and float(r["std_N"]) > 0 for r in rows)

@@ -61,6 +61,7 @@ def report_page(
         "slack": tables.slack_table(run),
         "schedule": tables.schedule_table(shape, spans if several else spans[:1]),
         "whole_schedule": tables.schedule_table(shape, None),
+        "supports": tables.support_table(shape),
         "inputs": tables.input_tables(run),
         "pictures": _pictures(run, shape, elasticity, waves=motion is not None),
         "data": {
