@@ -7,12 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from catenary_fe.results import Run
+from catenary_fe.results import ForceStatistics, Run
 from catenary_fe.views.style import (
     DROPPER,
     OTHERS,
     PANTOGRAPHS,
     SLACK,
+    distinct,
     finish,
     headroom,
     label_row,
@@ -20,6 +21,7 @@ from catenary_fe.views.style import (
     mark_supports,
     new_axes,
     note_failed,
+    runs,
     sequence,
 )
 
@@ -36,37 +38,45 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     filtered = run.filtered_contact_force()
     single = filtered.shape[0] == 1
     figures, names = run.figures(), run.data["pantograph"].values
-    for i, statistics in enumerate(figures):
-        colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
+    for i, (statistics, colour) in enumerate(zip(figures, distinct(len(figures)), strict=True)):
         x = run.data["position"].values[i]
         if single:
             raw = run.data["contact_force"].values[i]
             ax.plot(x, raw, color="#b9c7d3", linewidth=0.6, label="unfiltered")
-        ax.plot(x, filtered[i], color=colour, linewidth=1.1, label=f"{names[i]}, 0 to 20 Hz")
-        if statistics is None:
-            continue
-        inside = x[run.window(i)]
-        for value, style in (
-            (statistics.mean, "-"),
-            (statistics.statistical_max, "--"),
-            (statistics.statistical_min, "--"),
-        ):
-            label = ""
-            if single:
-                label = {statistics.mean: "mean", statistics.statistical_max: "mean ± 3σ"}.get(value, "")
-            ax.hlines(value, inside[0], inside[-1], color=colour, linestyle=style, linewidth=1.2, label=label)
+        said = "" if single else f": {_in_words(statistics)}"
+        ax.plot(x, filtered[i], color=colour, linewidth=1.1, label=f"{names[i]}, 0 to 20 Hz{said}")
+        if statistics is not None:
+            _draw_statistics(ax, run, statistics, colour, single)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
-    ax.legend(loc="upper left", fontsize=8, ncols=3, framealpha=0.9)
+    ax.legend(loc="upper left", fontsize=8, ncols=3 if single else 1, framealpha=0.9)
     ax.margins(x=0.01)
-    headroom(ax, 0.18)
-    means = ", ".join(
-        f"mean {s.mean:.1f} N, σ {s.std:.1f} N, min {s.min:.0f} N, max {s.max:.0f} N" for s in figures if s
-    )
-    said = means or "evaluated spans not passed"
-    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: contact force ({said})"
+    headroom(ax, 0.18 if single else 0.1 + 0.06 * len(figures))
+    said = f" ({_in_words(figures[0])})" if single else ""
+    title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h: contact force{said}"
     return note_failed(
         finish(ax, "position along the line (m)", "contact force (N)", title), run.failed_checks
     )
+
+
+def _in_words(s: ForceStatistics | None) -> str:
+    if s is None:
+        return "evaluated spans not passed"
+    return f"mean {s.mean:.1f} N, σ {s.std:.1f} N, min {s.min:.0f} N, max {s.max:.0f} N"
+
+
+def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: str, named: bool) -> None:
+    """Mean and mean ± 3σ over each run of evaluated spans."""
+    supports, groups = run.data["support_position"].values, np.array(runs(run.evaluated_spans))
+    for value, style, name in (
+        (statistics.mean, "-", "mean"),
+        (statistics.statistical_max, "--", "mean ± 3σ"),
+        (statistics.statistical_min, "--", ""),
+    ):
+        ends = supports[groups[:, 0] - 1], supports[groups[:, 1]]
+        ax.hlines(
+            [value] * len(groups), *ends, color=colour, linestyle=style, linewidth=1.2,
+            label=name if named else "",
+        )  # fmt: skip
 
 
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -117,6 +127,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     x = run.data["dropper_position"].values
     forces = run.data["dropper_force"].values
     mark_supports(ax, run.data["support_position"].values)
+    mark_spans(ax, run.data["support_position"].values, run.evaluated_spans)
     low, high = forces.min(axis=1), forces.max(axis=1)
     ax.vlines(x, low, high, color=DROPPER, linewidth=2.0, label="range during the run")
     ax.plot(x, forces[:, 0], ".", color=PANTOGRAPHS[0], markersize=6, label="at the start")
