@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium.loaded import LoadedLine
 from catenary_fe.results import Elasticity
 from catenary_fe.system import InputError
 
@@ -39,25 +40,23 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
 
     Raises InputError for positions beyond the line, SolverError if there is no equilibrium.
     """
-    from catenary_fe.fe.static_load import LoadedCatenary
-
     check_shape(shape)
     _check_positions(shape, np.array([x for x, _ in forces], dtype=float))
-    loaded = LoadedCatenary(shape.catenary, shape.mesh, shape.installation, forces=len(forces))
-    if forces:
-        loaded.solve([x for x, _ in forces], [f for _, f in forces])
-    model = loaded.model
-    shapes = model.wire_shapes(model.mbs.systemData.GetODE2Coordinates())
-    up, contact, messenger = model.axes - 1, shapes[0], shapes[shape.mesh.contact_wires]
-    dropper_forces = model.dropper_forces()
-    loaded.release()
+    line = LoadedLine(shape)
+    system, mesh = line.system, shape.mesh
+    moved = line.solve([x for x, _ in forces], [f for _, f in forces])
+    total = (system.reference + moved).reshape(-1, 2 * system.axes)
+    ends, up = mesh.first_nodes, system.axes - 1
+    contact = total[: ends[1]]
+    messenger = total[ends[mesh.contact_wires] : ends[mesh.contact_wires + 1]]
+    droppers = system.droppers
     return StaticState(
         contact_wire_x=contact[:, 0],
         contact_wire_z=contact[:, up],
         messenger_wire_x=messenger[:, 0],
         messenger_wire_z=messenger[:, up],
         contact_wire_uplift=contact[:, up] - shape.contact_wire_z,
-        dropper_forces=dropper_forces,
+        dropper_forces=droppers.tension(droppers.span(total.ravel())),
     )
 
 
@@ -79,8 +78,6 @@ def elasticity(
 
     Raises InputError for a force that is not positive or positions beyond the line.
     """
-    from catenary_fe.fe.static_load import lift_curve
-
     check_shape(shape)
     if not (np.isfinite(force) and force > 0):
         raise InputError(f"elasticity: force = {force!r} N: must be above 0; 100 to 200 N are usual")
@@ -92,7 +89,7 @@ def elasticity(
         else np.sort(np.asarray(positions, dtype=float))
     )
     _check_positions(shape, x)
-    lifts = lift_curve(shape.catenary, shape.mesh, shape.installation, x, force, progress)
+    lifts = LoadedLine(shape).lifts(x, force, progress)
     supports = shape.catenary.support_positions
     inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
     return Elasticity(position=x, uplift=lifts, force=force, support_position=inside)

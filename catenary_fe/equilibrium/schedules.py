@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.model import element_pulls
+from catenary_fe.fe.installation import element_pulls
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium.shape import Shape

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.equilibrium.schedules import DropperRow, SupportRow, dropper_rows, support_rows
+from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
-from catenary_fe.fe.model import Installation
 from catenary_fe.system import Catenary, InputError
 from catenary_fe.system.parameters import shorten
 
