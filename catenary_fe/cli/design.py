@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool, quiet: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
+    _check_drawn(catenary, spans, output)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
     with output_folder(output) as folder:
@@ -56,6 +57,17 @@ def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool
         if not quiet:
             print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
         print_warnings(warnings)
+
+
+def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None) -> None:
+    """Before the work: whether there are these spans to draw, and somewhere to draw them."""
+    if spans is None:
+        return
+    if output is None:
+        raise click.UsageError("--spans chooses the spans that are drawn: give -o DIR, too")
+    from catenary_fe.views.stretch import stretch
+
+    stretch(catenary, spans)
 
 
 def layout_facts(catenary: Catenary) -> dict[str, Any]:
@@ -138,6 +150,7 @@ def form(
     from catenary_fe.equilibrium import find_form, find_heights
 
     catenary = read_layout(layout, planar)
+    _check_drawn(catenary, spans, output)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
             shape = find_heights(catenary) if given_lengths else find_form(catenary)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from catenary_fe.results import ForceStatistics, Run
@@ -20,6 +19,7 @@ from catenary_fe.views.style import (
     mark_spans,
     mark_supports,
     new_axes,
+    new_panels,
     note_failed,
     runs,
     sequence,
@@ -91,8 +91,7 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     evaluated = [i for i in inner if {i, i + 1} & set(run.evaluated_spans)]
     colours = dict.fromkeys(inner, OTHERS) | dict(zip(evaluated, sequence(len(evaluated)), strict=True))
     if ax is None:
-        figure = Figure(figsize=(11.0, 6.2), layout="constrained")
-        ax, bars = figure.subplots(2, 1, height_ratios=(3, 2))
+        ax, bars = new_panels((11.0, 6.2), (3, 2))
         _uplift_bars(bars, uplift.max(axis=1), colours)
     for i in sorted(inner, key=evaluated.__contains__):
         name = f"support {i + 1}: at most {uplift[i].max():.1f} mm" if i in evaluated else None

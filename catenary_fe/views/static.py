@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity
@@ -22,6 +21,7 @@ from catenary_fe.views.style import (
     label_row,
     mark_supports,
     new_axes,
+    new_panels,
 )
 
 _LEFT = "#e6a07c"  # the left contact wire, of two
@@ -40,14 +40,11 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
         return _heights(ax, shape, part)
     detail = None if spans or part.is_close else evaluated_pair(shape.catenary)
     rows = 3 if detail else 2
-    figure = Figure(figsize=(11.0, 2.9 * rows), layout="constrained")
-    whole, *others = figure.subplots(rows, 1)
+    whole, *others = new_panels((11.0, 2.9 * rows), [1] * rows)
     _tensions(others[0], shape, part)
     if detail:
         _heights(others[1], shape, detail)
-    _heights(whole, shape, part, detail)
-    chosen: Axes = whole
-    return chosen
+    return _heights(whole, shape, part, detail)
 
 
 def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = None) -> Axes:

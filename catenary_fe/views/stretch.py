@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
-from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, runs
+from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, runs
 
 Floats = NDArray[np.float64]
 CLOSE = 4  # spans that a picture can show with all their dimensions
@@ -129,15 +128,13 @@ def draw_line(
         draw(ax, part)
         _legend(ax)
         return ax
-    figure = Figure(figsize=(size[0], 2 * size[1]), layout="constrained")
-    whole, close = figure.subplots(2, 1)
+    whole, close = new_panels((size[0], 2 * size[1]), (1, 1))
     detail = evaluated_pair(catenary, among)
     draw(whole, part)
     mark_detail(whole, detail)
     draw(close, detail)
     _legend(whole)
-    chosen: Axes = whole
-    return chosen
+    return whole
 
 
 def mark_detail(ax: Axes, detail: Stretch) -> None:

@@ -48,6 +48,16 @@ def new_axes(ax: Axes | None, size: tuple[float, float] = (10.0, 4.0)) -> Axes:
     return axes
 
 
+def new_panels(size: tuple[float, float], heights: Sequence[float]) -> list[Axes]:
+    """Axes below one another in a new figure.
+
+    size : [in] of the figure
+    heights : of the axes, relative to each other
+    """
+    figure = Figure(figsize=size, layout="constrained")
+    return list(figure.subplots(len(heights), 1, height_ratios=list(heights)))
+
+
 def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
     """Labels, title and a light grid."""
     ax.set_xlabel(x)

@@ -56,6 +56,14 @@ def test_form(capsys, layout, tmp_path):
     assert "supports" in out
 
 
+def test_the_spans_that_are_drawn(capsys, layout, tmp_path):
+    place = tmp_path / "out"
+    assert call(capsys, "info", layout, "--quiet", "-o", place)[0] == 0
+    whole = (place / "layout.png").read_bytes()
+    assert call(capsys, "info", layout, "--quiet", "--spans", "2,3", "-o", place)[0] == 0
+    assert (place / "layout.png").read_bytes() != whole
+
+
 def test_given_lengths(capsys, layout, tmp_path):
     code, _, err = call(capsys, "form", layout, "--given-lengths")
     assert code == 3
@@ -183,6 +191,8 @@ def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
         (["static", "LAYOUT", "--force", "0"], 3, "force = 0.0 N: must be above 0"),
         (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
         (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
+        (["form", "LAYOUT", "--spans", "2"], 2, "--spans chooses the spans that are drawn: give -o DIR"),
+        (["info", "LAYOUT", "--spans", "4,5", "-o", "out"], 3, "the line has spans 1 to 4"),
         (["frobnicate"], 2, "No such command"),
         (["info"], 2, "Missing argument 'LAYOUT'"),
     ],
