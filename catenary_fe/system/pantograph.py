@@ -23,7 +23,7 @@ class Stage(Parameters):
     """A mass with the spring and damper below it, which join it to the next stage or to the base."""
 
     mass: Positive
-    """[kg]"""
+    """[kg] of the stage"""
     stiffness: NonNegative
     """[N/m] of the spring below the mass"""
     damping: NonNegative = 0.0
