@@ -9,6 +9,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+import drawings
 import interface
 import key_tables
 from docutils import nodes
@@ -37,6 +38,7 @@ python_use_unqualified_type_names = True
 nitpicky = False
 suppress_warnings = ["ref.python"]  # several classes have a "name"
 
+
 def visit_math(self: Any, node: nodes.math) -> None:
     """A formula inside a line, as MathML, which browsers draw without a script."""
     self.body.append(convert(node.astext()))
@@ -51,6 +53,7 @@ def visit_math_block(self: Any, node: nodes.math_block) -> None:
 
 def setup(app: Any) -> None:
     """Sphinx calls this."""
+    drawings.draw_all(Path(__file__).parent / "pictures" / "drawn")
     app.add_html_math_renderer("mathml", (visit_math, None), (visit_math_block, None))
     app.add_directive("file-keys", key_tables.FileKeys)
     app.add_directive("library-names", key_tables.LibraryNames)

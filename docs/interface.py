@@ -17,7 +17,9 @@ from sphinx import addnodes
 from sphinx.util.inspect import stringify_signature
 
 _ENTRY = re.compile(r"^(?P<names>[A-Za-z_]\w*(?:, [A-Za-z_]\w*)*) : (?P<text>.*)$")
-_ARRAY = re.compile(r"NDArray\[[^\[\]]*\]|ndarray\[tuple\[Any, \.\.\.\], dtype\[\w+\]\]|\b(?:Floats|FloatArray|Integers)\b")
+_ARRAY = re.compile(
+    r"NDArray\[[^\[\]]*\]|ndarray\[tuple\[Any, \.\.\.\], dtype\[\w+\]\]|\b(?:Floats|FloatArray|Integers)\b"
+)
 _LITERAL = re.compile(r"Literal\[([^\]]*)\]")
 _SHORT = 60  # characters of a type
 _MODULE = re.compile(r"\b(?:np|xr|cf)\.(?=[A-Z])")

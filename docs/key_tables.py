@@ -189,10 +189,8 @@ def _toml(value: Any) -> str:
     return f'"{value}"' if isinstance(value, str) else f"{value:g}" if abs(value) < 1e3 else f"{value:.6g}"
 
 
-def example_of(
-    table: Table, key: Key, tables: list[Table], examples: dict[tuple[str, str], str]
-) -> str:
-    """What a file may say for a key: its own example, that of the same key elsewhere, or where its table is."""
+def example_of(table: Table, key: Key, tables: list[Table], examples: dict[tuple[str, str], str]) -> str:
+    """What a file may say for a key: where its table is, its own example, or that of the same key elsewhere."""
     inner = next((t for t in tables if t.name in key.tables), None)
     if inner and table in tables[:1]:
         return inner.places[0] if len(inner.places) == 1 else f"[{key.name}]"
@@ -226,7 +224,9 @@ class FileKeys(Directive):
         examples: dict[tuple[str, str], str],
     ) -> nodes.section:
         section = nodes.section(ids=[_identifier(kind, table.name)], names=[])
-        section += nodes.title("", "", *_written(f"``{titles[table.name]}``" if table.places else "At the top"))
+        section += nodes.title(
+            "", "", *_written(f"``{titles[table.name]}``" if table.places else "At the top")
+        )
         section += [nodes.paragraph("", "", *_written(p)) for p in table.meaning.split("\n\n") if p]
         keys = table.keys
         if table.like:
