@@ -19,7 +19,7 @@ SCHEMAS = {"layout": layout_schema, "pantograph": pantograph_schema}
 EXAMPLES = Path(__file__).parent / "reference" / "examples"
 _UNIT = re.compile(r"\[([^\]]+)\],?\s*")
 _HEADS = "Key", "Unit", "Default", "Allowed", "Meaning", "Example"
-_WIDTHS = 18, 7, 10, 13, 34, 18
+_WIDTHS = 19, 6, 9, 11, 33, 22
 _LONGEST = 50  # characters of an example
 
 
@@ -125,11 +125,17 @@ def tables_of(schema: dict[str, Any]) -> list[Table]:
         _collect(definitions | {"": schema}, name, "", tables)
     found = list(tables.values())
     for i, table in enumerate(found):
-        others = [t for t in found[:i] if t.keys and set(t.keys) < set(table.keys) and t.name]
-        if others and not table.like:
-            like = max(others, key=lambda t: len(t.keys))
-            table.like = like.name
+        alike = [t for t in found[:i] if t.name and t.keys and _extends(table, t)]
+        if alike:
+            table.like = max(alike, key=lambda t: len(t.keys)).name
     return found
+
+
+def _extends(table: Table, other: Table) -> bool:
+    """Whether a table has all keys of another, most of them the same in all."""
+    names = {key.name for key in table.keys}
+    same = set(table.keys) & set(other.keys)
+    return {key.name for key in other.keys} <= names and len(same) > len(other.keys) / 2
 
 
 def _collect(definitions: dict[str, Any], name: str, place: str, tables: dict[str, Table]) -> None:
@@ -190,7 +196,7 @@ def _toml(value: Any) -> str:
 
 
 def example_of(table: Table, key: Key, tables: list[Table], examples: dict[tuple[str, str], str]) -> str:
-    """What a file may say for a key: where its table is, its own example, or that of the same key elsewhere."""
+    """An example of a key: where its table is, its own, or that of the same key in another table."""
     inner = next((t for t in tables if t.name in key.tables), None)
     if inner and table in tables[:1]:
         return inner.places[0] if len(inner.places) == 1 else f"[{key.name}]"
@@ -233,9 +239,10 @@ class FileKeys(Directive):
             like = next(t for t in tables if t.name == table.like)
             keys = [key for key in keys if key not in like.keys]
             link = nodes.reference("", titles[like.name], refid=_identifier(kind, like.name), internal=True)
-            section += nodes.paragraph("", "", nodes.Text("All keys of "), link, nodes.Text(", and:"))
+            rest = ". New or different:" if keys else "."
+            section += nodes.paragraph("", "", nodes.Text("The keys of "), link, nodes.Text(rest))
         rows = [self._row(kind, table, key, tables, examples) for key in keys]
-        section += _table(rows)
+        section += [_table(rows)] if rows else []
         return section
 
     def _row(
@@ -272,7 +279,7 @@ def _table(rows: list[list[list[nodes.Node]]]) -> nodes.table:
     head = nodes.row("", *(nodes.entry("", nodes.paragraph("", each)) for each in _HEADS))
     body = [nodes.row("", *(nodes.entry("", nodes.paragraph("", "", *cell)) for cell in row)) for row in rows]
     group += [nodes.thead("", head), nodes.tbody("", *body)]
-    return nodes.table("", group, classes=["keys"])
+    return nodes.table("", group, classes=["keys", "colwidths-given"])
 
 
 class LibraryNames(Directive):
