@@ -144,6 +144,17 @@ class Shape:
         errors: Floats = heights[self.mesh.nodes(self.mesh.lower)] - self.catenary.design_heights
         return errors
 
+    @property
+    def lengths_note(self) -> str:
+        """Which dropper lengths the line hangs with, and what they make of its design heights."""
+        if not self.catenary.gives_dropper_lengths:
+            return "hung with the dropper lengths of its design"
+        low, high = 1e3 * self.height_errors.min(), 1e3 * self.height_errors.max()
+        return (
+            f"hung with the {self.dropper_lengths.size} dropper lengths that the layout gives: at the droppers"
+            f" the contact wire lies {low:+.1f} to {high:+.1f} mm from its design height"
+        )
+
     def contact_wire_height(self, x: ArrayLike) -> Floats:
         """[m] of the (right) contact wire at positions x [m] along the line, any shape."""
         return self.wires[0].height(x)

@@ -222,6 +222,7 @@ class Run:
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
             "evaluated_spans": list(self.evaluated_spans),
+            "dropper_lengths_given": self.catenary.gives_dropper_lengths,
             "filter": filter,
             "pantographs": [
                 s.as_dict() if s else ForceStatistics.none_as_dict(name)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from catenary_fe.system.arguments import numbers
 from catenary_fe.system.catenary_rules import catenary_faults
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.parameters import (
@@ -145,6 +146,33 @@ class Catenary(Parameters):
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
         return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
+
+    @property
+    def gives_dropper_lengths(self) -> bool:
+        """Whether all its droppers have lengths, with which it is hung instead of those of its design."""
+        return bool(self.droppers) and all(d.length is not None for d in self.droppers)
+
+    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
+        """The same line with these dropper lengths, which it is then hung with.
+
+        lengths : [m], shape (droppers,), stress-free
+
+        Raises InputError where their number is another one than the droppers', or one is not a length.
+        """
+        values = numbers("lengths", lengths, shape=(len(self.droppers),)).tolist()
+        return self._with_lengths(values)
+
+    def without_dropper_lengths(self) -> Self:
+        """The same line without dropper lengths of its own: form finding gives it those of the design."""
+        return self._with_lengths([None] * len(self.droppers))
+
+    def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
+        left = iter(lengths)
+        spans = tuple(
+            span.replace(droppers=tuple(d.replace(length=next(left)) for d in span.droppers))
+            for span in self.spans
+        )
+        return self.replace(spans=spans)
 
     @cached_property
     def design_heights(self) -> NDArray[np.float64]:
