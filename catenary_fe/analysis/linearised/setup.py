@@ -194,6 +194,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         yielding=_columns(factor, model.dropper_rows.T.tocsc()),
         links=_links(model, factor),
         bows=Bowed(model.bows.index, model.bows.length, model.bows.gap),
+        load=model.load,
         supports=np.concatenate([wire.supports for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,
