@@ -108,7 +108,7 @@ def simulate(
     for warning in warnings:
         _log.warning(warning)
     if method == "linearised":
-        return _linearised(shape, time, store_wire, case, progress)
+        return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
     set_up = partial(_compiled, shape, time, store_wire)
     if not compiled:
         set_up = partial(_by_exudyn, shape, time, store_wire, energy or method == "nonlinear")
@@ -119,7 +119,14 @@ def simulate(
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
-    return _until_mean_force(case, time, set_up, label, progress, keeper)
+    return _told(_until_mean_force(case, time, set_up, label, progress, keeper), len(warnings))
+
+
+def _told(run: Run, known: int) -> Run:
+    """The run, with what it warns of in the log; the first ``known`` warnings are there already."""
+    for warning in run.warnings[known:]:
+        _log.warning(warning)
+    return run
 
 
 def _check_options(
@@ -150,8 +157,6 @@ def _linearised(
     (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
     if isinstance(result, CatenaryError):
         raise result
-    for warning in result.warnings[len(case.warnings) :]:
-        _log.warning(warning)
     return result
 
 
