@@ -103,6 +103,10 @@ def simulate(
     plan = plan_run(shape, len(pantographs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
+    if method == "linearised" and time.tolerance != TimeSettings().tolerance:
+        warnings.append(
+            f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
+        )
     case = Case(pantographs, speed, plan.start, plan.distance, warnings)
     _check_room(shape, case, time, store_wire, method)
     for warning in warnings:

@@ -29,12 +29,19 @@ from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 
 class RayleighDamping(Parameters):
-    """Damping matrix α M + β K of the wires, K with the stiffness that the tension gives."""
+    """Damping matrix α M + β K of the wires: contact, messenger and stitch wires.
+
+    M is the mass of the wires alone, without clamps, droppers and arms. K is their stiffness about the static
+    state, of EA, EI and the tension. On a taut dropper β acts too: it damps with β k beside its own damping.
+    Neither acts on the springs and links of supports and steady arms, which have dampers of their own
+    (`messenger_damping`, `messenger_lateral_damping`, `steady_arm.damping`), nor on pantographs and contact.
+    Programs that take β K of the whole line, springs of arms included, damp more.
+    """
 
     alpha: NonNegative = 0.0
-    """[1/s] share of the mass matrix"""
+    """[1/s] share of the wires' mass matrix"""
     beta: NonNegative = 0.0
-    """[s] share of the stiffness matrix"""
+    """[s] share of the stiffness matrix of wires and taut droppers"""
 
 
 class Catenary(Parameters):
@@ -66,7 +73,7 @@ class Catenary(Parameters):
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
     damping: RayleighDamping = RayleighDamping()
-    """of the wires"""
+    """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
     """numbers of the spans (from 1) over which statistics are taken; unset: the middle third"""
     spatial: bool | None = None

@@ -183,7 +183,7 @@ class LayoutFile(Parameters):
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
     damping: RayleighDamping = RayleighDamping()
-    """of the wires"""
+    """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
     """numbers of the spans (from 1) for the statistics; unset: the middle third"""
     spatial: Annotated[bool, Field(strict=True)] | None = None
