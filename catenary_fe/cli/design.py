@@ -116,7 +116,9 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
 @layout_argument
 @click.option(
-    "--design-lengths", is_flag=True, help="Find the lengths of the design, whatever lengths the layout gives."
+    "--design-lengths",
+    is_flag=True,
+    help="Find the lengths of the design, whatever lengths the layout gives.",
 )
 @planar_option
 @output_option

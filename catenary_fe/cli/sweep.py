@@ -153,7 +153,11 @@ def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
 
     given = sum(isinstance(case, SweepCase) and case.catenary.gives_dropper_lengths for case in cases)
     if given:
-        say("note", f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives", "cyan")
+        say(
+            "note",
+            f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives",
+            "cyan",
+        )
 
 
 @contextmanager

@@ -95,9 +95,9 @@ def _check_taut(model: Model) -> None:
         catenary = model.catenary
         dropper, span = catenary.droppers[slack[0]], catenary.dropper_spans[slack[0]]
         raise InputError(
-            f"span {span}: the dropper at {dropper.position:g} m is slack at rest, as {slack.size} of the"
-            f" line's {len(catenary.droppers)} are: modal analysis takes all droppers as taut; change its length,"
-            " or the form"
+            f"span {span}: the dropper at {dropper.position:g} m is slack at rest ({slack.size} of"
+            f" {len(catenary.droppers)} are): modal analysis takes all droppers as taut; change its"
+            " length, or the form"
         )
 
 

@@ -13,6 +13,7 @@ from catenary_fe.system.errors import InputError
 from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
+_ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
 _Kind = TypeVar("_Kind")
 
 
@@ -28,20 +29,16 @@ def number(
 ) -> float:
     """A finite number within bounds, as a float. Raises InputError."""
     is_number = isinstance(value, Real) and not isinstance(value, bool | np.bool_)
-    bounds = [f"{word} {bound:g}" for word, bound in (("above", above), ("at least", least), ("at most", most))
-              if bound is not None]  # fmt: skip
-    good = (
-        is_number
-        and np.isfinite(found := float(value))  # type: ignore[arg-type]
-        and (above is None or found > above)
-        and (least is None or found >= least)
-        and (most is None or found <= most)
-    )
-    if not good:
-        said = f"{value:g}{' ' + unit if unit else ''}" if is_number else shorten(value)
-        rule = "must be " + (" and ".join(bounds) if is_number and bounds else "a finite number")
-        raise InputError(f"{name} = {said}: {rule}" + (f"; {remedy}" if remedy else ""))
-    return found
+    found = float(value) if isinstance(value, Real) and is_number else float("nan")
+    low = above if above is not None else least
+    in_bounds = (low is None or found > low or found == least) and (most is None or found <= most)
+    if np.isfinite(found) and in_bounds:
+        return found
+    words = [("above", above), ("at least", least), ("at most", most)]
+    bounds = " and ".join(f"{word} {bound:g}" for word, bound in words if bound is not None)
+    said = f"{found:g}{' ' + unit if unit else ''}" if is_number else shorten(value)
+    rule = f"must be {bounds}" if is_number and bounds else "must be a finite number"
+    raise InputError(f"{name} = {said}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
 def whole(name: str, value: object, *, least: int, most: int | None = None) -> int:
@@ -75,16 +72,18 @@ def numbers(
     return array
 
 
-def on_the_line(name: str, values: object, length: float, start: float = 0.0) -> Floats:
-    """Positions [m] along a line or a wire, any shape. Raises InputError for those beyond its ends."""
-    x = numbers(name, values)
-    slack = 1e-6  # [m] the ends may be rounded
-    outside = (x < start - slack) | (x > length + slack)
+def on_the_wire(name: str, values: object, nodes: Floats) -> Floats:
+    """Positions [m] along a wire, any shape. Raises InputError for those beyond its ends.
+
+    nodes : [m], of the wire
+    """
+    x, first, last = numbers(name, values), float(nodes[0]), float(nodes[-1])
+    outside = (x < first - _ROUNDED) | (x > last + _ROUNDED)
     if outside.any():
         raise InputError(
-            f"{name} = {x[outside][0]:g} m lies beyond the line, which runs from {start:g} to {length:g} m"
+            f"{name} = {x[outside][0]:g} m lies beyond the wire, which runs from {first:g} to {last:g} m"
         )
-    return np.clip(x, start, length)
+    return np.clip(x, first, last)
 
 
 def span_numbers(spans: Iterable[int] | None, last: int, otherwise: Sequence[int]) -> list[int]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, wraps
 from math import tan
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,18 @@ from catenary_fe.system.parameters import (
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
+
+
+def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
+    """A property that is computed once, an array that nobody can change in place."""
+
+    @wraps(function)
+    def compute(catenary: Any) -> NDArray[Any]:
+        array = function(catenary)
+        array.setflags(write=False)
+        return array
+
+    return cached_property(compute)
 
 
 class RayleighDamping(Parameters):
@@ -128,7 +140,7 @@ class Catenary(Parameters):
             **others,
         )
 
-    @cached_property
+    @_fixed_array
     def support_positions(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,)."""
         return np.concatenate([[0.0], np.cumsum([span.length for span in self.spans])])
@@ -143,13 +155,13 @@ class Catenary(Parameters):
         """All droppers of the line in order."""
         return tuple(dropper for span in self.spans for dropper in span.droppers)
 
-    @cached_property
+    @_fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line."""
         starts = self.support_positions
         return np.array([starts[i] + d.position for i, s in enumerate(self.spans) for d in s.droppers])
 
-    @cached_property
+    @_fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
         return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
@@ -181,12 +193,12 @@ class Catenary(Parameters):
         )
         return self.replace(spans=spans)
 
-    @cached_property
+    @_fixed_array
     def design_heights(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
         return self.contact_wire_height + np.concatenate([s.height_offsets() for s in self.spans])
 
-    @cached_property
+    @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
         heights = [s.system_height or self.system_height for s in self.supports]
@@ -211,7 +223,7 @@ class Catenary(Parameters):
         half = (self.contact_wire_spacing or 0.0) / 2
         return (-half, half) if half else (0.0,)
 
-    @cached_property
+    @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
         wires = len(self.contact_wire_offsets)
@@ -230,12 +242,12 @@ class Catenary(Parameters):
         """Numbers of the supports, from 0, that have a stitch wire."""
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
-    @cached_property
+    @_fixed_array
     def staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
         return np.array([support.stagger for support in self.supports])
 
-    @cached_property
+    @_fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
         """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
 

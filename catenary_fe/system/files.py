@@ -104,10 +104,10 @@ class SpanEntry(Span):
 
 
 class SteadyArmEntry(SteadyArm):
-    """What is different about one support's steady arm: keys that are not given stay as all supports have them.
+    """How one support's steady arm differs: keys that are not given stay as all supports have them.
 
-    A `length` where the others have a `stiffness`, or the reverse, makes an arm of the other kind: of theirs it
-    then keeps the `uplift_room` alone.
+    A `length` where the others have a `stiffness`, or the reverse, makes an arm of the other kind: of theirs
+    it then keeps the `uplift_room` alone.
     """
 
     @model_validator(mode="after")

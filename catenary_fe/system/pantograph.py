@@ -116,7 +116,7 @@ class Pantograph(Parameters):
             )
         if self.mean_force is not None and self.aerodynamic_force != AerodynamicForce():
             raise ValueError(
-                "aerodynamic_force has no effect beside mean_force, which is what comes out of it and the uplift"
+                "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
                 " together; leave it out, or give an uplift_force instead"
             )
         return self

@@ -83,8 +83,8 @@ def _without_effect(catenary: Catenary) -> list[str]:
         if not catenary.is_spatial and support.messenger_lateral_stiffness is not None:
             found.setdefault(
                 "lateral",
-                f"support {i}: messenger_lateral_stiffness has no effect in the vertical plane; spatial = true"
-                " models the line in space",
+                f"support {i}: messenger_lateral_stiffness has no effect in the vertical plane; spatial ="
+                " true models the line in space",
             )
         if not support.stitch_wire and catenary.stitch_wire is None:
             found.setdefault(

@@ -62,8 +62,8 @@ class SteadyArm(Parameters):
                 raise ValueError(f"{name} has no effect on an arm that is a {kind}; leave it out")
         if self.preload and self.holds_design_height:
             raise ValueError(
-                f"preload = {self.preload:g} N has no effect on an arm that is set for the wire's design height;"
-                " give holds_design_height = false too, or leave it out"
+                f"preload = {self.preload:g} N has no effect on an arm that is set for the wire's design"
+                " height; give holds_design_height = false too, or leave it out"
             )
         return self
 
