@@ -125,6 +125,8 @@ class SteadyArmEntry(SteadyArm):
         for kind, other in (("length", "stiffness"), ("stiffness", "length")):
             if kind in own and other not in own and kept.get(other) is not None:
                 kept = {"uplift_room": kept["uplift_room"]}
+        if own.get("holds_design_height"):
+            kept.pop("preload", None)  # of arms that do not hold it
         return SteadyArm(**(kept | own))
 
 
