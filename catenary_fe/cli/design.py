@@ -19,11 +19,13 @@ from catenary_fe.cli.terminal import (
     progress_bar,
     quiet_option,
     read_layout,
+    say_lengths,
     spans_option,
     warned,
     working,
 )
 from catenary_fe.system import Catenary, load_catenary
+from catenary_fe.system.catenary_rules import check_lengths
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.plausibility import layout_warnings
 
@@ -36,6 +38,7 @@ from catenary_fe.system.plausibility import layout_warnings
 def info(layout: str, output: str | None, as_json: bool, quiet: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
+    check_lengths(catenary)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
     with output_folder(output) as folder:
@@ -83,6 +86,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "spans": len(lengths),
         "span_lengths_m": [min(lengths), max(lengths)],
         "droppers": len(catenary.droppers),
+        "dropper_lengths_given": catenary.gives_dropper_lengths,
         "model": "in space" if catenary.is_spatial else "in the vertical plane",
         "contact_wires": len(catenary.contact_wire_offsets),
         "stitch_wires": len(catenary.stitched_supports),
@@ -112,25 +116,34 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
 @layout_argument
 @click.option(
-    "--given-lengths", is_flag=True, help="Take the droppers' lengths from the layout and find the heights."
+    "--design-lengths",
+    is_flag=True,
+    help="Find the lengths of the design, whatever lengths the layout gives.",
 )
 @planar_option
 @output_option
 @json_option
 @quiet_option
 def form(
-    layout: str, given_lengths: bool, planar: bool, output: str | None, as_json: bool, quiet: bool
+    layout: str, design_lengths: bool, planar: bool, output: str | None, as_json: bool, quiet: bool
 ) -> None:
-    """Find the dropper lengths that give the contact wire of a LAYOUT its design height."""
-    from catenary_fe.equilibrium import find_form, find_heights
+    """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
+
+    Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
+    contact wire then lies from its design height.
+    """
+    from catenary_fe.equilibrium import find_form
 
     catenary = read_layout(layout, planar)
+    if design_lengths:
+        catenary = catenary.without_dropper_lengths()
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
-            shape = find_heights(catenary) if given_lengths else find_form(catenary)
+            shape = find_form(catenary)
         rows = [row.as_dict() for row in shape.dropper_schedule()]
         result: dict[str, Any] = {
             "droppers": rows,
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
@@ -171,6 +184,7 @@ def form(
             for row in rows
         ]
         print_table(f"{catenary.name}: dropper schedule", columns, table)
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])
 
@@ -210,6 +224,7 @@ def static(
             "elasticity": rows,
             "non_uniformity": curve.non_uniformity,
             "force_N": curve.force,
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "warnings": layout_warnings(catenary),
         }
         if folder:
@@ -229,5 +244,6 @@ def static(
             ("position m", "elasticity mm/N"),
             table,
         )
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])

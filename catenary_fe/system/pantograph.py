@@ -114,6 +114,11 @@ class Pantograph(Parameters):
                 "uplift_force and mean_force: give exactly one, the force that pushes the lowest mass up"
                 " or the mean contact force that it shall result in"
             )
+        if self.mean_force is not None and self.aerodynamic_force != AerodynamicForce():
+            raise ValueError(
+                "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
+                " together; leave it out, or give an uplift_force instead"
+            )
         return self
 
     def static_uplift(self, speed: float) -> float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity
 from catenary_fe.system import GRAVITY, Catenary
+from catenary_fe.system.arguments import span_numbers
 from catenary_fe.views.style import (
     CONTACT,
     DROPPER,
@@ -42,7 +43,8 @@ def plot_layout(
     spans : numbers of the spans, from 1; unset: the first two
     to_scale : the same scale along and up; else heights are exaggerated, and the title says how much
     """
-    spans = spans or range(1, min(2, len(catenary.spans)) + 1)
+    last = len(catenary.spans)
+    spans = span_numbers(spans, last, range(1, min(2, last) + 1))
     supports = catenary.support_positions
     start, end = supports[min(spans) - 1], supports[max(spans)]
     room = end - start
@@ -191,7 +193,7 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
     spans : numbers of the spans, from 1; unset: the evaluated ones
     """
     catenary = shape.catenary
-    spans = spans or catenary.spans_to_evaluate
+    spans = span_numbers(spans, len(catenary.spans), catenary.spans_to_evaluate)
     start, end = catenary.support_positions[min(spans) - 1], catenary.support_positions[max(spans)]
     ax = new_axes(ax)
     nodes = shape.contact_wire_x

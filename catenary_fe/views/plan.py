@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.system import Catenary
+from catenary_fe.system.arguments import span_numbers
 from catenary_fe.views.layout import hanging_lines
 from catenary_fe.views.style import DROPPER, SUPPORT, finish, headroom, mark_supports, new_axes
 
@@ -22,7 +23,7 @@ def plot_plan(
     head_width : [m] of the panhead's working part, drawn as a band
     """
     catenary = shape.catenary
-    spans = spans or catenary.spans_to_evaluate[:4]
+    spans = span_numbers(spans, len(catenary.spans), catenary.spans_to_evaluate[:4])
     supports = catenary.support_positions
     start, end = supports[min(spans) - 1], supports[max(spans)]
     ax = new_axes(ax, (11.0, 4.2))
