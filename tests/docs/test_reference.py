@@ -15,7 +15,7 @@ import catenary_fe as cf
 
 DOCS = Path(__file__).parents[2] / "docs"
 OTHERS = "howto,*.md,reference/commands.md"
-UNREADABLE = "FieldInfo", "Annotated[", "AfterValidator", "ndarray[", "NoneType", "FloatArray", "<factory>", "Type:"
+UNREADABLE = "FieldInfo", "Annotated[", "AfterValidator", "ndarray[", "NoneType", "FloatArray", "Type:"
 
 
 @pytest.fixture(scope="module")
