@@ -173,7 +173,8 @@ def _note(definitions: dict[str, Any], name: str, value: Any, found: dict[tuple[
             continue
         schema = definitions[name]
         for branch in _references({k: v for k, v in schema.items() if k in ("anyOf", "oneOf")}):
-            _note(definitions, branch, each, found)
+            if set(each) <= set(definitions[branch].get("properties", {})):
+                _note(definitions, branch, each, found)
         for key, inner in each.items():
             part = schema.get("properties", {}).get(key)
             if part is None:
@@ -198,7 +199,7 @@ def _toml(value: Any) -> str:
 def example_of(table: Table, key: Key, tables: list[Table], examples: dict[tuple[str, str], str]) -> str:
     """An example of a key: where its table is, its own, or that of the same key in another table."""
     inner = next((t for t in tables if t.name in key.tables), None)
-    if inner and table in tables[:1]:
+    if inner and not table.places:
         return inner.places[0] if len(inner.places) == 1 else f"[{key.name}]"
     if own := examples.get((table.name, key.name)):
         return own
@@ -217,7 +218,8 @@ class FileKeys(Directive):
         """Nodes in place of the directive."""
         kind = self.arguments[0]
         tables = tables_of(SCHEMAS[kind]())
-        titles = {t.name: ", ".join(t.places) or "Top of the file" for t in tables}
+        tops = [t for t in tables if not t.places]
+        titles = {t.name: ", ".join(t.places) or _top(t, len(tops)) for t in tables}
         examples = examples_of(kind)
         return [self._section(kind, table, tables, titles, examples) for table in tables]
 
@@ -231,7 +233,7 @@ class FileKeys(Directive):
     ) -> nodes.section:
         section = nodes.section(ids=[_identifier(kind, table.name)], names=[])
         section += nodes.title(
-            "", "", *_written(f"``{titles[table.name]}``" if table.places else "At the top")
+            "", "", *_written(f"``{titles[table.name]}``" if table.places else titles[table.name])
         )
         section += [nodes.paragraph("", "", *_written(p)) for p in table.meaning.split("\n\n") if p]
         keys = table.keys
@@ -262,6 +264,12 @@ class FileKeys(Directive):
             _written(key.meaning),
             [nodes.literal("", example)],
         ]
+
+
+def _top(table: Table, tops: int) -> str:
+    """The heading of what stands outside any table; with its name where a kind of file has several forms."""
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", table.name).capitalize()
+    return f"{words}: at the top" if tops > 1 else "At the top"
 
 
 def _identifier(kind: str, name: str) -> str:
