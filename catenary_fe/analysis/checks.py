@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
+from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead, Pantograph
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.parameters import shorten
 from catenary_fe.system.plausibility import layout_warnings, pantograph_warnings
@@ -91,6 +91,12 @@ def run_warnings(
     wave_speed = catenary.contact_wire.wave_speed
     found = layout_warnings(catenary)
     found += dict.fromkeys(line for p in pantographs for line in pantograph_warnings(p, speed))
+    if not catenary.is_spatial:
+        found += dict.fromkeys(
+            f"{p.name}: head.spring_distance has no effect in the vertical plane, where no head rolls"
+            for p in pantographs
+            if isinstance(p, Pantograph) and p.head and p.head.spring_distance
+        )
     if speed > WAVE_SPEED_SHARE * wave_speed:
         found.append(
             f"speed {3.6 * speed:.4g} km/h is {speed / wave_speed:.3f} of the contact wire's wave speed,"

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import logging
+
 import numpy as np
 
 from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.results.modes import Modes, WireShapes
 from catenary_fe.system import InputError
+
+_log = logging.getLogger(__name__)
 
 
 def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
@@ -54,7 +58,10 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
         pairs.sideways,
         pairs.damping_ratios,
     )
-    return modes if below is None else modes.below(below)
+    modes = modes if below is None else modes.below(below)
+    for warning in mode_warnings(shape, modes):
+        _log.warning(warning)
+    return modes
 
 
 def mode_warnings(shape: Shape, modes: Modes) -> list[str]:

@@ -103,12 +103,16 @@ def simulate(
     plan = plan_run(shape, len(pantographs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
+    if method == "linearised" and time.tolerance != TimeSettings().tolerance:
+        warnings.append(
+            f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
+        )
     case = Case(pantographs, speed, plan.start, plan.distance, warnings)
     _check_room(shape, case, time, store_wire, method)
     for warning in warnings:
         _log.warning(warning)
     if method == "linearised":
-        return _linearised(shape, time, store_wire, case, progress)
+        return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
     set_up = partial(_compiled, shape, time, store_wire)
     if not compiled:
         set_up = partial(_by_exudyn, shape, time, store_wire, energy or method == "nonlinear")
@@ -119,7 +123,14 @@ def simulate(
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
-    return _until_mean_force(case, time, set_up, label, progress, keeper)
+    return _told(_until_mean_force(case, time, set_up, label, progress, keeper), len(warnings))
+
+
+def _told(run: Run, known: int) -> Run:
+    """The run, with what it warns of in the log; the first ``known`` warnings are there already."""
+    for warning in run.warnings[known:]:
+        _log.warning(warning)
+    return run
 
 
 def _check_options(
@@ -150,8 +161,6 @@ def _linearised(
     (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
     if isinstance(result, CatenaryError):
         raise result
-    for warning in result.warnings[len(case.warnings) :]:
-        _log.warning(warning)
     return result
 
 

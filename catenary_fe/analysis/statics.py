@@ -12,10 +12,12 @@ from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.equilibrium.loaded import LoadedLine
 from catenary_fe.results import Elasticity
 from catenary_fe.system import InputError
+from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class StaticState:
     """The catenary under static forces.

@@ -37,7 +37,7 @@ LOST = "lost"  # marks the record of a case that was killed: it is not kept
 _log = logging.getLogger(__name__)
 
 
-RESULTS = 2  # rises when the same inputs give other results: cases that were kept are then computed anew
+RESULTS = 3  # rises when the same inputs give other results: cases that were kept are then computed anew
 
 
 @dataclass(frozen=True, kw_only=True)

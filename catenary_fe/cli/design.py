@@ -21,11 +21,13 @@ from catenary_fe.cli.terminal import (
     progress_bar,
     quiet_option,
     read_layout,
+    say_lengths,
     spans_option,
     warned,
     working,
 )
 from catenary_fe.system import Catenary, load_catenary
+from catenary_fe.system.catenary_rules import check_lengths
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.plausibility import layout_warnings
 
@@ -43,6 +45,7 @@ def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
     _check_drawn(catenary, spans, output)
+    check_lengths(catenary)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
     with output_folder(output) as folder:
@@ -101,6 +104,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "spans": len(lengths),
         "span_lengths_m": [min(lengths), max(lengths)],
         "droppers": len(catenary.droppers),
+        "dropper_lengths_given": catenary.gives_dropper_lengths,
         "model": "in space" if catenary.is_spatial else "in the vertical plane",
         "contact_wires": len(catenary.contact_wire_offsets),
         "stitch_wires": len(catenary.stitched_supports),
@@ -130,7 +134,9 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
 @layout_argument
 @click.option(
-    "--given-lengths", is_flag=True, help="Take the droppers' lengths from the layout and find the heights."
+    "--design-lengths",
+    is_flag=True,
+    help="Find the lengths of the design, whatever lengths the layout gives.",
 )
 @drawn_spans_option
 @planar_option
@@ -139,24 +145,31 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @quiet_option
 def form(
     layout: str,
-    given_lengths: bool,
+    design_lengths: bool,
     spans: list[int] | None,
     planar: bool,
     output: str | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Find the dropper lengths that give the contact wire of a LAYOUT its design height."""
-    from catenary_fe.equilibrium import find_form, find_heights
+    """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
+
+    Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
+    contact wire then lies from its design height.
+    """
+    from catenary_fe.equilibrium import find_form
 
     catenary = read_layout(layout, planar)
     _check_drawn(catenary, spans, output)
+    if design_lengths:
+        catenary = catenary.without_dropper_lengths()
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
-            shape = find_heights(catenary) if given_lengths else find_form(catenary)
+            shape = find_form(catenary)
         result: dict[str, Any] = {
             "droppers": [row.as_dict() for row in shape.dropper_schedule()],
             "supports": [row.as_dict() for row in shape.support_schedule()],
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
@@ -175,6 +188,7 @@ def form(
         print_json(result)
     elif not quiet:
         print_schedules(shape)
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])
 
@@ -214,6 +228,7 @@ def static(
             "elasticity": rows,
             "non_uniformity": curve.non_uniformity,
             "force_N": curve.force,
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "warnings": layout_warnings(catenary),
         }
         if folder:
@@ -233,6 +248,7 @@ def static(
             ("position m", "elasticity mm/N"),
             table,
         )
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])
 

@@ -17,6 +17,7 @@ from catenary_fe.cli.terminal import (
     print_warnings,
     quiet_option,
     read_layout,
+    say_lengths,
     warned,
     working,
 )
@@ -56,6 +57,7 @@ def modes(
         rows = found.table()
         result: dict[str, Any] = {
             "modes": rows,
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "warnings": [*layout_warnings(catenary), *mode_warnings(shape, found)],
         }
         if folder:
@@ -80,5 +82,6 @@ def modes(
         ]
         columns = ("mode", "frequency Hz", "damping %", "kind")
         print_table(f"{catenary.name}: modes about the static state", columns, table)
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])

@@ -28,6 +28,7 @@ from catenary_fe.cli.terminal import (
     quiet_option,
     read_layout,
     say,
+    say_lengths,
     spans_option,
     warned,
     working,
@@ -187,6 +188,7 @@ def run(
             print_criteria(system, rows)
         if output:
             click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
+    say_lengths(shape, quiet)
     if not as_json:
         print_warnings(summary["warnings"])
     return exit_code(rows)

@@ -21,6 +21,7 @@ from catenary_fe.cli.terminal import (
     print_table,
     progress_bar,
     quiet_option,
+    say,
     spans_option,
 )
 from catenary_fe.system import Catenary, InputError
@@ -130,6 +131,7 @@ def sweep(
     elif not quiet:
         _print(rows, axes)
         click.echo(f"table and pictures in {output}")
+        _say_lengths(cases)
     failed = [record for record in records if "error" in record]
     for record in failed:
         said = ", ".join(f"{name} = {value}" for name, value in record["values"].items())
@@ -143,6 +145,19 @@ def sweep(
         )
     if failed and (lost or len(failed) == len(records)):
         raise click.exceptions.Exit((lost or failed)[0]["exit_code"])
+
+
+def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
+    """One line on standard error where cases hang with dropper lengths that their layout gives."""
+    from catenary_fe.analysis.sweep import SweepCase
+
+    given = sum(isinstance(case, SweepCase) and case.catenary.gives_dropper_lengths for case in cases)
+    if given:
+        say(
+            "note",
+            f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives",
+            "cyan",
+        )
 
 
 @contextmanager

@@ -8,11 +8,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from catenary_fe.system import Catenary, CatenaryError, load_catenary
+
+if TYPE_CHECKING:
+    from catenary_fe.equilibrium import Shape
 
 layout_argument = click.argument("layout", type=click.Path())
 planar_option = click.option(
@@ -90,6 +93,12 @@ def say(kind: str, text: str, colour: str) -> None:
     click.echo(
         f"{click.style(f'{kind}:', fg=colour, bold=True) if coloured else f'{kind}:'} {text}", err=True
     )
+
+
+def say_lengths(shape: Shape, quiet: bool) -> None:
+    """One line on standard error where a line hangs with dropper lengths that its layout gives."""
+    if shape.catenary.gives_dropper_lengths and not quiet:
+        say("note", shape.lengths_note, "cyan")
 
 
 def print_warnings(warnings: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from catenary_fe.cli.folder import run_in
-from catenary_fe.cli.terminal import quiet_option, shown_spans_option, working
+from catenary_fe.cli.terminal import quiet_option, say_lengths, shown_spans_option, working
 from catenary_fe.system import InputError, load_catenary
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ def view(layout_or_folder: str, spans: list[int] | None, output: str | None, qui
     require_screen()
     with working("form finding", not quiet):
         shape = _shape(layout_or_folder)
+    say_lengths(shape, quiet)
     last = len(shape.catenary.spans)
     shown = spans or [min(2, last)]
     if not (min(shown) >= 1 and max(shown) <= last):

@@ -12,6 +12,8 @@ from catenary_fe.equilibrium.schedules import DropperRow, SupportRow, dropper_ro
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.arguments import on_the_wire
+from catenary_fe.system.frozen import changed_by_copy
 from catenary_fe.system.parameters import shorten
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class HangingWire:
     """Where one wire hangs.
@@ -44,20 +47,28 @@ class HangingWire:
         return cls(q[:, 0], y, q[:, axes - 1], dy_dx, inclinations[:, -1])
 
     def height(self, x: ArrayLike) -> Floats:
-        """[m] at positions x [m] along the line, any shape; cubic inside the elements."""
+        """[m] at positions x [m] along the line, any shape; cubic inside the elements.
+
+        Raises InputError beyond the wire's ends.
+        """
         return self._between(x, self.z, self.dz_dx)
 
     def lateral(self, x: ArrayLike) -> Floats:
-        """[m] to the left of the track's centre at positions x [m] along the line, any shape."""
+        """[m] to the left of the track's centre at positions x [m] along the line, any shape.
+
+        Raises InputError beyond the wire's ends.
+        """
         return self._between(x, self.y, self.dy_dx)
 
     def _between(self, x: ArrayLike, values: Floats, slopes: Floats) -> Floats:
         from scipy.interpolate import CubicHermiteSpline
 
-        found: Floats = CubicHermiteSpline(self.x, values, slopes)(np.asarray(x, dtype=float))
+        at = on_the_wire("x", x, self.x)
+        found: Floats = CubicHermiteSpline(self.x, values, slopes)(at)
         return found
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class Shape:
     """A catenary with its dropper lengths, in static equilibrium on one mesh.
@@ -117,8 +128,22 @@ class Shape:
         errors: Floats = heights[self.mesh.nodes(self.mesh.lower)] - self.catenary.design_heights
         return errors
 
+    @property
+    def lengths_note(self) -> str:
+        """Which dropper lengths the line hangs with, and what they make of its design heights."""
+        if not self.catenary.gives_dropper_lengths:
+            return "hung with the dropper lengths of its design"
+        low, high = 1e3 * self.height_errors.min(), 1e3 * self.height_errors.max()
+        return (
+            f"hung with the {self.dropper_lengths.size} dropper lengths that the layout gives: at the"
+            f" droppers the contact wire lies {low:+.1f} to {high:+.1f} mm from its design height"
+        )
+
     def contact_wire_height(self, x: ArrayLike) -> Floats:
-        """[m] of the (right) contact wire at positions x [m] along the line, any shape."""
+        """[m] of the (right) contact wire at positions x [m] along the line, any shape.
+
+        Raises InputError beyond the line's ends.
+        """
         return self.wires[0].height(x)
 
     @property

@@ -92,7 +92,8 @@ class LinearModel:
     mass, stiffness, damping : sparse, symmetric, shape (size, size)
     dropper_rows : sparse, shape (droppers, size), elongation of each dropper
     dropper_stiffness, dropper_damping : [N/m], [N s/m], shape (droppers,)
-    dropper_tension : [N], shape (droppers,), at rest
+    dropper_tension : [N], shape (droppers,), at rest; below 0 for those that are slack there: what they would
+        push with if they could
     contacts : the contact wires
     heights : shape (nodes of all wires,), numbers of the coordinates up, or HELD
     tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
@@ -122,6 +123,12 @@ class LinearModel:
         """Number of coordinates."""
         return int(self.mass.shape[0])
 
+    @property
+    def load(self) -> Floats:
+        """[N], shape (size,), constant: holds the state at rest, where slack droppers do not push."""
+        load: Floats = -self.dropper_rows.T @ np.minimum(self.dropper_tension, 0.0)
+        return load
+
 
 def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> LinearModel:
     """The catenary's linearised model at static equilibrium.
@@ -138,12 +145,14 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     gaps = sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
     moved, span = dropper_motion(model, whole + gaps)
-    tension = model.dropper_forces()
     rows = elongation(span) @ moved
     stiffness, damping = np.array([d.stiffness for d in catenary.droppers]), dropper_damping(catenary)
+    pull = model.dropper_forces()
+    push = stiffness * (np.linalg.norm(span, axis=1) - model.dropper_lengths)
+    tension = np.where(pull > 0, pull, np.minimum(push, 0.0))
     D = catenary.damping.alpha * M + catenary.damping.beta * K
     D = D + rows.T @ _diagonal(damping) @ rows + _padded(spring_values(model, "damping"), gaps)
-    K = K + rows.T @ _diagonal(stiffness) @ rows + moved.T @ turning_stiffness(span, tension) @ moved
+    K = K + rows.T @ _diagonal(stiffness) @ rows + moved.T @ turning_stiffness(span, pull) @ moved
     K = K + _padded(spring_values(model, "stiffness") + link_stiffness(model), gaps)
     masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
     M = M + _padded(_diagonal(np.outer(masses, np.repeat([1.0, 0.0], model.axes)).ravel()), gaps)

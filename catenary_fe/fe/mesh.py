@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -18,6 +19,7 @@ _ROUNDING = 1e-6  # [m] stations closer than this are one
 _CLAMP_ROOM = 0.05  # [m] a dropper this close to a stitch wire's clamp hangs on the messenger wire
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class MeshSettings:
     """Element lengths [m]. The defaults come from the study in ``models/studies/convergence.py``.

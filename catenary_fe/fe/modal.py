@@ -91,11 +91,14 @@ def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) ->
 
 
 def _check_taut(model: Model) -> None:
-    tension = model.dropper_forces()
-    if (tension <= 0).any():
+    slack = np.flatnonzero(model.dropper_forces() <= 0)
+    if slack.size:
+        catenary = model.catenary
+        dropper, span = catenary.droppers[slack[0]], catenary.dropper_spans[slack[0]]
         raise InputError(
-            f"dropper {int(np.argmin(tension)) + 1} of the line is slack at rest: modal analysis takes all"
-            " droppers as taut; change its length, or the form"
+            f"span {span}: the dropper at {dropper.position:g} m is slack at rest ({slack.size} of"
+            f" {len(catenary.droppers)} are): modal analysis takes all droppers as taut; change its"
+            " length, or the form"
         )
 
 

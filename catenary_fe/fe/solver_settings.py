@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from catenary_fe.system import InputError
+from catenary_fe.system.frozen import changed_by_copy
 
 SHORTEST_STEP = 1e-6  # [s] below it a run takes weeks, and its histories more memory than there is
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class TimeSettings:
     """Time integration. The defaults come from the study in ``models/studies/convergence.py``.

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import InputError, Pantograph, Wire
+from catenary_fe.system.frozen import changed_by_copy
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]
 Function = Callable[[Floats], Floats]
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class SlidingPantograph:
     """A pantograph of lumped masses in moving contact with the wire, its heads at z = 0 when it starts.
@@ -34,6 +36,7 @@ class SlidingPantograph:
 Load = MovingForce | ElasticPantograph | SlidingPantograph
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class WireProblem:
     """A wire along the track, held in height at both ends.
@@ -85,6 +88,7 @@ class WireProblem:
         return nearest
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class WireMotion:
     """Motion of a wire, complete.

@@ -5,8 +5,16 @@ False, or None where no limit is known; ``missed(rows)`` are those that fail, ``
 a table.
 """
 
+from catenary_fe.results.comparison import (
+    Column,
+    InputDifference,
+    failed_checks,
+    input_differences,
+    key_figures,
+)
 from catenary_fe.results.criteria import Criterion, criteria_rows, labels, missed
 from catenary_fe.results.elasticity import Elasticity
+from catenary_fe.results.export import history_tables, write_tables
 from catenary_fe.results.guards import Check, run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
@@ -17,9 +25,11 @@ from catenary_fe.results.wires import WireHistory
 
 __all__ = [
     "Check",
+    "Column",
     "Criterion",
     "Elasticity",
     "ForceStatistics",
+    "InputDifference",
     "ModalRun",
     "ModeKind",
     "Modes",
@@ -28,11 +38,16 @@ __all__ = [
     "WireShapes",
     "band_pass",
     "criteria_rows",
+    "failed_checks",
     "force_statistics",
+    "history_tables",
+    "input_differences",
+    "key_figures",
     "labels",
     "load_run",
     "low_pass",
     "missed",
     "run_checks",
     "spectrum",
+    "write_tables",
 ]

@@ -21,11 +21,13 @@ from catenary_fe.system.current_collection import (
     force_limit,
     mean_force_limit,
 )
+from catenary_fe.system.frozen import changed_by_copy
 
 Relation = Literal["at most", "at least", "above"]
 _HOLDS: dict[Relation, Callable[[float, float], bool]] = {"at most": le, "at least": ge, "above": gt}
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class Criterion:
     """One key figure of a run against one limit: a row of a table, so in display units.

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.system.frozen import changed_by_copy
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class Elasticity:
     """Uplift under a static force, point by point along the line.

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results.signal import CUT_OFF, spectrum
 from catenary_fe.system import Pantograph
+from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     from catenary_fe.results.run import Run
@@ -40,6 +41,7 @@ SPREAD = 0.2  # of the standard deviation
 SLACK = 0.1  # of the droppers' time
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class Check:
     """One guard: what was found, what it must be, and what to do if it is not.

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.results.modes import Modes
+from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class ModalRun:
     """One pantograph on a line that answers with a limited number of eigenforms.

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
+from numbers import Integral
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.arguments import number, on_the_wire
+from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.system.parameters import shorten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +28,7 @@ _SHAPES = 6  # half-waves in a bay that are told apart
 _SAMPLES = 24  # of a bay
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class ModeKind:
     """What a mode looks like, found by computation.
@@ -48,6 +53,7 @@ class ModeKind:
         return f"{self.symmetry}, {where}" if self.symmetry != "neither" else where
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class WireShapes:
     """Shapes of one wire, vertical if not said otherwise, mass-normalised over the whole line.
@@ -64,11 +70,14 @@ class WireShapes:
     lateral: Floats | None = None
 
     def at(self, x: ArrayLike) -> Floats:
-        """[1/√kg], shape (modes, points): shapes at positions [m], cubic inside the elements."""
+        """[1/√kg], shape (modes, points): shapes at positions [m], cubic inside the elements.
+
+        Raises InputError beyond the wire's ends.
+        """
         from scipy.interpolate import CubicHermiteSpline
 
         spline = CubicHermiteSpline(self.x, self.values.T, self.slopes.T, axis=0)
-        shapes: Floats = spline(np.asarray(x, dtype=float)).T
+        shapes: Floats = spline(on_the_wire("x", x, self.x)).T
         return shapes
 
     def first(self, count: int) -> WireShapes:
@@ -77,6 +86,7 @@ class WireShapes:
         return WireShapes(self.x, self.values[:count], self.slopes[:count], lateral)
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class Modes:
     """Modes of a line about its static state, droppers taut, in rising order.
@@ -100,7 +110,8 @@ class Modes:
         return int(self.frequencies.size)
 
     def below(self, frequency: float) -> Modes:
-        """Only the modes up to a frequency [Hz]."""
+        """Only the modes up to a frequency [Hz]. Raises InputError for what is not one."""
+        frequency = number("frequency", frequency, "Hz", above=0.0)
         n = int(np.searchsorted(self.frequencies, frequency, side="right"))
         return Modes(
             self.catenary,
@@ -120,8 +131,8 @@ class Modes:
 
     def kind(self, mode: int) -> ModeKind:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
-        if not 0 <= mode < len(self):
-            raise InputError(f"mode {mode}: {len(self)} modes were computed, numbered from 0")
+        if not isinstance(mode, Integral) or not 0 <= int(mode) < len(self):
+            raise InputError(f"mode {shorten(mode)}: {len(self)} modes were computed, numbered from 0")
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)

@@ -20,6 +20,8 @@ from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
 from catenary_fe.results.wires import WireHistory, wire_histories
 from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
+from catenary_fe.system.arguments import span_numbers, whole
+from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +31,7 @@ Floats = NDArray[np.float64]
 FORMAT = "catenary_fe run 1"
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class Run:
     """Histories of a run, as an xarray Dataset with units, and what they came from.
@@ -121,6 +124,7 @@ class Run:
         Raises InputError for spans that the line does not have or the pantograph does not reach, or, in a
         partial run, does not leave.
         """
+        whole("pantograph", pantograph, least=0, most=self.data.sizes["pantograph"] - 1)
         supports = np.asarray(self.data["support_position"].values)
         x = np.asarray(self.data["position"].values[pantograph])
         inside = np.zeros(x.size, dtype=bool)
@@ -137,11 +141,7 @@ class Run:
         return inside
 
     def _numbers(self, spans: Sequence[int] | None) -> Sequence[int]:
-        last = self.data.sizes["support"] - 1
-        for number in spans or ():
-            if not 1 <= number <= last:
-                raise InputError(f"span {number}: the line has spans 1 to {last}")
-        return spans or self.evaluated_spans
+        return span_numbers(spans, self.data.sizes["support"] - 1, self.evaluated_spans)
 
     def contact_force_statistics(
         self, spans: Sequence[int] | None = None, filter: FilterKind = "causal"
@@ -222,6 +222,7 @@ class Run:
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
             "evaluated_spans": list(self.evaluated_spans),
+            "dropper_lengths_given": self.catenary.gives_dropper_lengths,
             "filter": filter,
             "pantographs": [
                 s.as_dict() if s else ForceStatistics.none_as_dict(name)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+
+from catenary_fe.system.arguments import one_of
 
 Floats = NDArray[np.float64]
 FilterKind = Literal["causal", "zero-phase"]
@@ -23,7 +25,7 @@ def low_pass(signal: Floats, step: float, cut_off: float = CUT_OFF, kind: Filter
     kind : "causal" runs forward once, as a measuring filter does, and delays; "zero-phase" runs forward and
         back, which doubles the attenuation
 
-    Raises ValueError where the cut-off is not below half the sampling frequency.
+    Raises ValueError where the cut-off is not below half the sampling frequency, InputError for another kind.
     """
     return _filter(signal, step, cut_off, "lowpass", kind)
 
@@ -36,6 +38,7 @@ def band_pass(signal: Floats, step: float, lower: float, upper: float, kind: Fil
 def _filter(signal: Floats, step: float, cut_off: float, band: str, kind: FilterKind) -> Floats:
     from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt
 
+    one_of("filter", kind, get_args(FilterKind))
     if not 0 < cut_off < 0.5 / step:
         raise ValueError(
             f"cut-off = {cut_off:g} Hz: must lie below half of the {1 / step:g} samples a second"

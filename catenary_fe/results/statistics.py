@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.results.signal import FilterKind, band_pass, low_pass
+from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 
 
+@changed_by_copy
 @dataclass(frozen=True, kw_only=True)
 class ForceStatistics:
     """Statistics of one pantograph's contact force, low-passed at 20 Hz, over the evaluated spans.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import InputError
+from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +19,7 @@ Floats = NDArray[np.float64]
 _SUFFIX = "_height"
 
 
+@changed_by_copy
 @dataclass(frozen=True)
 class WireHistory:
     """One wire's shapes.

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, wraps
 from math import tan
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from catenary_fe.system.arguments import numbers
 from catenary_fe.system.catenary_rules import catenary_faults
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.parameters import (
@@ -27,13 +28,32 @@ from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 
+def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
+    """A property that is computed once, an array that nobody can change in place."""
+
+    @wraps(function)
+    def compute(catenary: Any) -> NDArray[Any]:
+        array = function(catenary)
+        array.setflags(write=False)
+        return array
+
+    return cached_property(compute)
+
+
 class RayleighDamping(Parameters):
-    """Damping matrix α M + β K of the wires, K with the stiffness that the tension gives."""
+    """Damping matrix α M + β K of the wires: contact, messenger and stitch wires.
+
+    M is the mass of the wires alone, without clamps, droppers and arms. K is their stiffness about the static
+    state, of EA, EI and the tension. On a taut dropper β acts too: it damps with β k beside its own damping.
+    Neither acts on the springs and links of supports and steady arms, which have dampers of their own
+    (`messenger_damping`, `messenger_lateral_damping`, `steady_arm.damping`), nor on pantographs and contact.
+    Programs that take β K of the whole line, springs of arms included, damp more.
+    """
 
     alpha: NonNegative = 0.0
-    """[1/s] share of the mass matrix"""
+    """[1/s] share of the wires' mass matrix"""
     beta: NonNegative = 0.0
-    """[s] share of the stiffness matrix"""
+    """[s] share of the stiffness matrix of wires and taut droppers"""
 
 
 class Catenary(Parameters):
@@ -65,7 +85,7 @@ class Catenary(Parameters):
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
     damping: RayleighDamping = RayleighDamping()
-    """of the wires"""
+    """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
     """numbers of the spans (from 1) over which statistics are taken; unset: the middle third"""
     spatial: bool | None = None
@@ -120,7 +140,7 @@ class Catenary(Parameters):
             **others,
         )
 
-    @cached_property
+    @_fixed_array
     def support_positions(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,)."""
         return np.concatenate([[0.0], np.cumsum([span.length for span in self.spans])])
@@ -135,23 +155,50 @@ class Catenary(Parameters):
         """All droppers of the line in order."""
         return tuple(dropper for span in self.spans for dropper in span.droppers)
 
-    @cached_property
+    @_fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line."""
         starts = self.support_positions
         return np.array([starts[i] + d.position for i, s in enumerate(self.spans) for d in s.droppers])
 
-    @cached_property
+    @_fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
         return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
 
-    @cached_property
+    @property
+    def gives_dropper_lengths(self) -> bool:
+        """Whether all its droppers have lengths, with which it is hung instead of those of its design."""
+        return bool(self.droppers) and all(d.length is not None for d in self.droppers)
+
+    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
+        """The same line with these dropper lengths, which it is then hung with.
+
+        lengths : [m], shape (droppers,), stress-free
+
+        Raises InputError where their number is another one than the droppers', or one is not a length.
+        """
+        values = numbers("lengths", lengths, shape=(len(self.droppers),)).tolist()
+        return self._with_lengths(values)
+
+    def without_dropper_lengths(self) -> Self:
+        """The same line without dropper lengths of its own: form finding gives it those of the design."""
+        return self._with_lengths([None] * len(self.droppers))
+
+    def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
+        left = iter(lengths)
+        spans = tuple(
+            span.replace(droppers=tuple(d.replace(length=next(left)) for d in span.droppers))
+            for span in self.spans
+        )
+        return self.replace(spans=spans)
+
+    @_fixed_array
     def design_heights(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
         return self.contact_wire_height + np.concatenate([s.height_offsets() for s in self.spans])
 
-    @cached_property
+    @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
         heights = [s.system_height or self.system_height for s in self.supports]
@@ -176,7 +223,7 @@ class Catenary(Parameters):
         half = (self.contact_wire_spacing or 0.0) / 2
         return (-half, half) if half else (0.0,)
 
-    @cached_property
+    @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
         wires = len(self.contact_wire_offsets)
@@ -195,12 +242,12 @@ class Catenary(Parameters):
         """Numbers of the supports, from 0, that have a stitch wire."""
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
-    @cached_property
+    @_fixed_array
     def staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
         return np.array([support.stagger for support in self.supports])
 
-    @cached_property
+    @_fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
         """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from catenary_fe.system.errors import InputError
+
 if TYPE_CHECKING:
     from catenary_fe.system.catenary import Catenary
 
@@ -94,3 +96,19 @@ def _missing_twins(catenary: Catenary) -> list[str]:
         for number, dropper in enumerate(span.droppers, start=1)
         if dropper.contact_wire is not None
     ]
+
+
+def check_lengths(catenary: Catenary) -> None:
+    """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
+    missing = [
+        f"span {i}: dropper {number} at {dropper.position:g} m"
+        for i, span in enumerate(catenary.spans, start=1)
+        for number, dropper in enumerate(span.droppers, start=1)
+        if dropper.length is None
+    ]
+    count = sum(len(span.droppers) for span in catenary.spans)
+    if len(missing) not in (0, count):
+        raise InputError(
+            f"{missing[0]} has no length: {len(missing)} of {count} droppers have none, the others have one;"
+            " give all lengths, or none to have them found"
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -24,7 +24,7 @@ from catenary_fe.system.parameters import (
     shorten,
 )
 from catenary_fe.system.span import Span
-from catenary_fe.system.support import Support
+from catenary_fe.system.support import SteadyArm, Support
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
 LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
@@ -103,11 +103,51 @@ class SpanEntry(Span):
     """how many spans like this follow one another"""
 
 
-class SupportEntry(Support):
-    """A support that differs from the others."""
+class SteadyArmEntry(SteadyArm):
+    """How one support's steady arm differs: keys that are not given stay as all supports have them.
 
+    A `length` where the others have a `stiffness`, or the reverse, makes an arm of the other kind: of theirs
+    it then keeps the `uplift_room` alone.
+    """
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        return self  # judged when it is whole
+
+    @model_validator(mode="after")
+    def _link_has_a_height(self) -> Self:
+        return self
+
+    def beside(self, common: SteadyArm | None) -> SteadyArm:
+        """The whole arm. Raises InputError where the two do not make one."""
+        own = {name: getattr(self, name) for name in self.model_fields_set}
+        kept: dict[str, Any] = common.model_dump() if common else {}
+        for kind, other in (("length", "stiffness"), ("stiffness", "length")):
+            if kind in own and other not in own and kept.get(other) is not None:
+                kept = {"uplift_room": kept["uplift_room"]}
+        if own.get("holds_design_height"):
+            kept.pop("preload", None)  # of arms that do not hold it
+        return SteadyArm(**(kept | own))
+
+
+class SupportEntry(Support):
+    """A support that differs from the others; keys that are not given stay as all supports have them."""
+
+    steady_arm: SteadyArmEntry | None = None
+    """registration of the contact wire, as far as it differs"""
     at: Annotated[int, Field(strict=True, ge=1)]
     """number of the support, from 1; support n stands before span n"""
+
+    @model_validator(mode="after")
+    def _damping_needs_a_spring(self) -> Self:
+        return self  # judged beside what all supports have
+
+    def beside(self, common: Support) -> Support:
+        """The whole support. Raises InputError where the two do not make one."""
+        changes = {name: getattr(self, name) for name in self.model_fields_set - {"at"}}
+        if self.steady_arm:
+            changes["steady_arm"] = self.steady_arm.beside(common.steady_arm)
+        return common.replace(**changes)
 
 
 class LayoutFile(Parameters):
@@ -145,7 +185,7 @@ class LayoutFile(Parameters):
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
     damping: RayleighDamping = RayleighDamping()
-    """of the wires"""
+    """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
     """numbers of the spans (from 1) for the statistics; unset: the middle third"""
     spatial: Annotated[bool, Field(strict=True)] | None = None
@@ -190,10 +230,14 @@ class LayoutFile(Parameters):
 
     def _all_supports(self, count: int) -> tuple[tuple[Support, ...], list[str]]:
         """The common support with the differing ones in their places, and what is wrong with those."""
-        staggered = self.stagger and "stagger" not in self.support.model_fields_set
         sides = [self.stagger * (-1) ** i for i in range(count)]
-        supports = [self.support.replace(stagger=y) if staggered else self.support for y in sides]
+        supports = [self.support.replace(stagger=y) if self.stagger else self.support for y in sides]
         faults: list[str] = []
+        if self.stagger and "stagger" in self.support.model_fields_set:
+            faults.append(
+                f"stagger = {self.stagger:g} m, to alternating sides, and support.stagger ="
+                f" {self.support.stagger:g} m: give one of them"
+            )
         named: set[int] = set()
         for entry in self.supports:
             if entry.at > count:
@@ -202,9 +246,8 @@ class LayoutFile(Parameters):
             if entry.at in named:
                 faults.append(f"supports: at = {entry.at} is there twice; make one entry of them")
             named.add(entry.at)
-            changes = {name: getattr(entry, name) for name in entry.model_fields_set - {"at"}}
             try:
-                supports[entry.at - 1] = supports[entry.at - 1].replace(**changes)
+                supports[entry.at - 1] = entry.beside(supports[entry.at - 1])
             except InputError as error:
                 faults += [f"supports: at = {entry.at}: {line}" for line in error.problems]
         return tuple(supports), faults

@@ -23,7 +23,7 @@ class Stage(Parameters):
     """A mass with the spring and damper below it, which join it to the next stage or to the base."""
 
     mass: Positive
-    """[kg]"""
+    """[kg] of the stage"""
     stiffness: NonNegative
     """[N/m] of the spring below the mass"""
     damping: NonNegative = 0.0
@@ -113,6 +113,11 @@ class Pantograph(Parameters):
             raise ValueError(
                 "uplift_force and mean_force: give exactly one, the force that pushes the lowest mass up"
                 " or the mean contact force that it shall result in"
+            )
+        if self.mean_force is not None and self.aerodynamic_force != AerodynamicForce():
+            raise ValueError(
+                "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
+                " together; leave it out, or give an uplift_force instead"
             )
         return self
 

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from pydantic_core import ErrorDetails
 
 from catenary_fe.system.errors import InputError
+from catenary_fe.system.frozen import refuse_change
 
 GRAVITY = 9.81  # [m/s²]
 LARGEST = 1e15  # in SI units: beyond it, and below its inverse, products of some leave the range of floats
@@ -81,6 +82,14 @@ class Parameters(BaseModel, metaclass=_ReadableErrors):
         if type(self) is not type(other):
             return NotImplemented
         return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Raises InputError: :meth:`replace` makes a changed copy."""
+        refuse_change(self, name, type(self).model_fields, f".replace({name}=...)")
+
+    def __delattr__(self, name: str) -> None:
+        """Raises InputError: :meth:`replace` makes a changed copy."""
+        refuse_change(self, name, type(self).model_fields, f".replace({name}=...)")
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed, checked like a new object."""

@@ -73,7 +73,47 @@ def layout_warnings(catenary: Catenary) -> list[str]:
         if support.steady_arm is None:
             warnings.append(f"support {i} has no steady arm: the contact wire is free to sag there")
             break
-    return warnings
+    return warnings + _without_effect(catenary)
+
+
+def _without_effect(catenary: Catenary) -> list[str]:
+    """Values that change nothing on this line, each kind told once."""
+    found: dict[str, str] = {}
+    for i, support in enumerate(catenary.supports, start=1):
+        if not catenary.is_spatial and support.messenger_lateral_stiffness is not None:
+            found.setdefault(
+                "lateral",
+                f"support {i}: messenger_lateral_stiffness has no effect in the vertical plane; spatial ="
+                " true models the line in space",
+            )
+        if not support.stitch_wire and catenary.stitch_wire is None:
+            found.setdefault(
+                "stitch", f"support {i}: stitch_wire = false has no effect: the line has no stitch wires"
+            )
+    if catenary.stitch_wire and not catenary.stitched_supports:
+        found["stitch"] = "stitch_wire has no effect: no support between the line's ends has one"
+    for i, span in enumerate(catenary.spans, start=1):
+        sagging = span.droppers if len(span.droppers) == 1 else span.droppers[1:-1]
+        if span.pre_sag and all(d.height_offset is not None for d in sagging):
+            found.setdefault(
+                "pre_sag",
+                f"span {i}: pre_sag = {span.pre_sag:g} m has no effect: it is the sag between the outermost"
+                " droppers, where a dropper without a height_offset has to be",
+            )
+    return list(found.values()) + _anchored(catenary)
+
+
+def _anchored(catenary: Catenary) -> list[str]:
+    """Values of a line's ends alone, which anchor the wires whatever is written there."""
+    inert = ("steady_arm", "messenger_stiffness", "messenger_damping", "messenger_lateral_stiffness",
+             "messenger_lateral_damping", "stitch_wire")  # fmt: skip
+    inner = catenary.supports[1:-1]
+    return [
+        f"support {i}: {name} has no effect at the line's end, which anchors both wires"
+        for i in (1, len(catenary.supports))
+        for name in inert
+        if inner and all(getattr(s, name) != getattr(catenary.supports[i - 1], name) for s in inner)
+    ]
 
 
 def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Range]]]:

@@ -60,6 +60,11 @@ class SteadyArm(Parameters):
             if getattr(self, name):
                 kind = "spring, as it has a stiffness" if self.length is None else "link, as it has a length"
                 raise ValueError(f"{name} has no effect on an arm that is a {kind}; leave it out")
+        if self.preload and self.holds_design_height:
+            raise ValueError(
+                f"preload = {self.preload:g} N has no effect on an arm that is set for the wire's design"
+                " height; give holds_design_height = false too, or leave it out"
+            )
         return self
 
     @model_validator(mode="after")

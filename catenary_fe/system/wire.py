@@ -49,9 +49,9 @@ class Dropper(Parameters):
     mass_per_length: NonNegative = 0.0
     """[kg/m], lumped half to each end"""
     messenger_clamp_mass: NonNegative = 0.0
-    """[kg]"""
+    """[kg] of the clamp at its upper end, on the messenger wire or the stitch wire"""
     contact_wire_clamp_mass: NonNegative = 0.0
-    """[kg]"""
+    """[kg] of the clamp at its lower end"""
     height_offset: Number | None = None
     """[m] design height of the contact wire here above the nominal one; unset: the span's pre-sag decides"""
     contact_wire: Literal[1, 2] | None = None

@@ -2,6 +2,7 @@
 
 from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 from catenary_fe.views.criteria import plot_criteria
+from catenary_fe.views.film import film
 from catenary_fe.views.layout import plot_layout
 from catenary_fe.views.modes import plot_mode, plot_spectrum
 from catenary_fe.views.plan import plot_plan
@@ -13,6 +14,7 @@ from catenary_fe.views.static import plot_elasticity, plot_static_shape
 from catenary_fe.views.sweep import plot_sweep_deviation, plot_sweep_forces, plot_sweep_uplift
 
 __all__ = [
+    "film",
     "plot_contact_force",
     "plot_criteria",
     "plot_dropper_forces",

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from catenary_fe.results import Run
 from catenary_fe.results.files import written_aside
 from catenary_fe.system import InputError
+from catenary_fe.system.arguments import number, span_numbers, whole
 from catenary_fe.views.scene import Scene, scene
 from catenary_fe.views.style import (
     DROPPER,
@@ -58,10 +59,8 @@ def film(
     if path.suffix.lower() not in (".gif", ".mp4"):
         raise InputError(f"{path}: a film's name ends with .gif or .mp4")
     for name, value in (("slowed", slowed), ("magnified", magnified)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(f"film: {name} = {value!r}: must be above 0")
-    if not 1 <= frames_per_second <= 50:
-        raise InputError(f"film: {frames_per_second} frames a second: must be 1 to 50")
+        number(f"film: {name}", value, above=0.0)
+    whole("film: frames_per_second", frames_per_second, least=1, most=50)
     view = _View(run, spans, magnified, slowed)
     stored = run.wires()[0].time
     wanted = np.arange(view.begin, view.stop, 1 / (frames_per_second * slowed))
@@ -77,10 +76,8 @@ class _View:
     """The window of the film: what stands still is drawn once, what moves in each frame."""
 
     def __init__(self, run: Run, spans: Sequence[int] | None, magnified: float, slowed: float) -> None:
-        spans = spans or run.evaluated_spans
+        spans = span_numbers(spans, run.data.sizes["support"] - 1, run.evaluated_spans)
         supports = run.data["support_position"].values
-        if not (min(spans) >= 1 and max(spans) < supports.size):
-            raise InputError(f"spans {list(spans)}: the line has spans 1 to {supports.size - 1}")
         room = supports[max(spans)] - supports[min(spans) - 1]
         self.start = max(0.0, float(supports[min(spans) - 1] - 0.15 * room))
         self.end = min(float(supports[-1]), float(supports[max(spans)] + 0.15 * room))

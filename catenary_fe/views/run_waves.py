@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.system import InputError
+from catenary_fe.system.arguments import one_of, span_numbers
 from catenary_fe.views.space_time import plot_space_time
 from catenary_fe.views.style import note_failed
 
@@ -41,6 +42,7 @@ def plot_run_waves(
 
     Raises InputError where the run stored no wire shapes, or none of that wire.
     """
+    one_of("quantity", quantity, get_args(Quantity))
     history = next((w for w in run.wires() if w.name == wire), None)
     if history is None:
         names = ", ".join(f"'{w.name}'" for w in run.wires())
@@ -67,19 +69,16 @@ def plot_run_waves(
 def _window(run: Run, spans: Sequence[int] | None) -> tuple[float, float, float, float]:
     """Place and time shown: from when the first pantograph enters until the last one leaves."""
     supports = run.data["support_position"].values
-    if spans is None:
-        evaluated = run.evaluated_spans
-        spans = range(max(1, min(evaluated) - 1), min(supports.size - 1, max(evaluated) + 1) + 1)
-    elif not (min(spans) >= 1 and max(spans) < supports.size):
-        raise InputError(f"spans {list(spans)}: the line has spans 1 to {supports.size - 1}")
-    numbers = [int(n) for n in spans]
+    evaluated, count = run.evaluated_spans, supports.size - 1
+    around = range(max(1, min(evaluated) - 1), min(count, max(evaluated) + 1) + 1)
+    numbers = span_numbers(spans, count, around)
     start, end = float(supports[min(numbers) - 1]), float(supports[max(numbers)])
     positions = run.data["position"].values
     first, last = positions.max(axis=0), positions.min(axis=0)
     begin = run.time[min(int(np.searchsorted(first, start)), run.time.size - 1)]
     stop = run.time[min(int(np.searchsorted(last, end)), run.time.size - 1)]
     if stop <= begin:
-        raise InputError(f"no pantograph was ever inside spans {list(spans)}")
+        raise InputError(f"no pantograph was ever inside spans {numbers}")
     return start, end, float(begin), float(stop)
 
 

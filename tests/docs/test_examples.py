@@ -1,5 +1,6 @@
 """The documentation's examples, run page by page as they are printed: files are written, commands typed."""
 
+import json
 import os
 import re
 import subprocess
@@ -60,7 +61,48 @@ def tutorial(folder):
     assert (folder / "first_run" / "report.html").stat().st_size > 1e6
 
 
-CLAIMS = {"tutorial": tutorial}
+def form_of(folder):
+    return json.loads((folder / "form.json").read_text(encoding="utf-8"))
+
+
+def whole_line(folder):
+    """The hand calculation of a dropper's force, and the verdict."""
+    force = form_of(folder / "form")["droppers"][8]["force_N"]
+    by_hand = 9.81 * 1.07 * 8.4 - 18e3 * 8 * 0.025 / 42**2 * 8.4 + 2
+    assert force == pytest.approx(73, abs=0.5) == pytest.approx(by_hand, abs=1)
+    figures = json.loads((folder / "run250" / "summary.json").read_text(encoding="utf-8"))["pantographs"][0]
+    assert figures["std_N"] < 0.3 * figures["mean_N"]
+
+
+def curves(folder):
+    """T L/R on each arm, inwards."""
+    pulls = form_of(folder / "curve")["steady_arm_lateral_forces_N"]
+    assert pulls[1:-1] == pytest.approx([-833] * 3, rel=0.01)
+
+
+def changing_heights(folder):
+    """What the arm of the lowest support carries by hand; the droppers beside it carry less."""
+    found = form_of(folder / "dip")
+    assert found["steady_arm_forces_N"][3] == pytest.approx(43, abs=0.5)
+    forces = [row["force_N"] for row in found["droppers"]]
+    assert forces[14] < forces[9] < forces[10]
+
+
+def given_lengths(folder):
+    """A middle dropper 10 mm too long lets the wire down by nearly half of it, against its neighbours."""
+    errors = [row["contact_wire_height_error_mm"] for row in form_of(folder / "site")["droppers"]]
+    assert [m - n for m, n in zip(errors[2::5], errors[1::5], strict=True)] == pytest.approx(
+        [-4.6] * 3, abs=0.4
+    )
+
+
+CLAIMS = {
+    "tutorial": tutorial,
+    "whole_line": whole_line,
+    "curves": curves,
+    "changing_heights": changing_heights,
+    "given_lengths": given_lengths,
+}
 
 
 def test_what_the_pages_say_of_file_sizes():

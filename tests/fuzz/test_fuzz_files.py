@@ -15,8 +15,8 @@ LOWER = {"mass": 15.0, "stiffness": 50.0, "damping": 90.0}
 CONTACT = {"contact_stiffness": 5e4, "contact_damping": 1.0}
 AIR = {"quadratic": 0.01, "linear": 0.1}
 PANTOGRAPHS = [
-    {"name": "two masses", "uplift_force": 120.0, "stages": [UPPER, LOWER], **CONTACT},
-    {"name": "head", "mean_force": "EN 50367 AC", "stages": [UPPER], "aerodynamic_force": AIR, "head": HEAD},
+    {"name": "air", "uplift_force": 120.0, "stages": [UPPER, LOWER], "aerodynamic_force": AIR, **CONTACT},
+    {"name": "head", "mean_force": "EN 50367 AC", "stages": [UPPER], "head": HEAD},
 ]
 
 

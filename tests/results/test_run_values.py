@@ -147,8 +147,9 @@ def test_a_summary_is_in_display_units():
     run = made_run(None, *TWO, start=(5.0, 4.0), support_uplift=uplift, wall_s=0.5, speed=200 / 3.6)
     summary = run.summary("zero-phase")
     assert list(summary) == [
-        "speed_kmh", "method", "evaluated_spans", "filter", "pantographs", "max_support_uplift_mm",
-        "simulated_s", "wall_s", "real_time_factor", "checks", "checks_failed", "warnings",
+        "speed_kmh", "method", "evaluated_spans", "dropper_lengths_given", "filter", "pantographs",
+        "max_support_uplift_mm", "simulated_s", "wall_s", "real_time_factor", "checks", "checks_failed",
+        "warnings",
     ]  # fmt: skip
     assert (summary["speed_kmh"], summary["method"], summary["filter"]) == (200.0, "nonlinear", "zero-phase")
     assert summary["evaluated_spans"] == [3, 4]

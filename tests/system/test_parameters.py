@@ -1,6 +1,7 @@
 """Parameter objects refuse what breaks a rule, in words that an engineer can act on."""
 
 import math
+import re
 
 import pytest
 
@@ -21,10 +22,43 @@ def test_wave_speed_and_impedance():
     assert wire.impedance == pytest.approx(wire.mass_per_length * wire.wave_speed)
 
 
-def test_objects_are_frozen():
-    wire = cf.Wire(**WIRE)
-    with pytest.raises(ValueError, match="frozen"):
-        wire.tension = 1.0
+@pytest.mark.parametrize(
+    ("make", "name", "said"),
+    [
+        (
+            lambda: cf.Wire(**WIRE),
+            "tension",
+            r"Wire\.tension cannot .* copy with \.replace\(tension=\.\.\.\)",
+        ),
+        (lambda: cf.Wire(**WIRE), "tensoin", "Wire has no 'tensoin', .* did you mean 'tension'"),
+        (lambda: cf.Wire(**WIRE), "wave_speed", "Wire.wave_speed follows from the fields"),
+        (
+            cf.TimeSettings,
+            "step",
+            r"TimeSettings\.step cannot .* dataclasses\.replace\(\.\.\., step=\.\.\.\)",
+        ),
+        (cf.MeshSettings, "colour", "MeshSettings has no 'colour', .* it has contact_wire_element, "),
+    ],
+)
+def test_nothing_is_changed_in_place(make, name, said):
+    thing = make()
+    (line,) = problems(setattr, thing, name, 1.0)
+    assert re.search(said, line)
+    assert problems(delattr, thing, name) == (line,)
+    assert thing == make()
+
+
+def test_results_are_not_changed_in_place_either(short_shape, short_run):
+    statistics = short_run.contact_force_statistics()[0]
+    for thing, name in ((short_shape, "wires"), (short_run, "data"), (statistics, "std")):
+        (line,) = problems(setattr, thing, name, None)
+        assert line.startswith(f"{type(thing).__name__}.{name} cannot be changed in place")
+
+
+def test_arrays_of_a_catenary_are_not_changed_in_place(reference):
+    for name in ("support_positions", "dropper_positions", "design_heights", "staggers", "lateral_pulls"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(reference, name)[0] = 1.0
 
 
 @pytest.mark.parametrize(

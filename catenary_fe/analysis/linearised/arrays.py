@@ -112,6 +112,7 @@ class Line(NamedTuple):
     rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
     yielding : columns of the inverse for the droppers
     links, bows : steady arms, inclined elements
+    load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.linear_model.LinearModel`
     supports, heights, tensions, rest : coordinates of heights at supports and of all nodes, of tensions, and
         the tensions at rest
     """
@@ -131,6 +132,7 @@ class Line(NamedTuple):
     yielding: Columns
     links: Links
     bows: Bowed
+    load: Floats
     supports: Integers
     heights: Integers
     tensions: Integers

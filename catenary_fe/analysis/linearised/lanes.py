@@ -143,7 +143,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
     ) -> int:
         groups = flat.x.size // 4
         for _ in range(steps):
-            flat.x[:] = 0.0
+            flat.x[:] = line.load
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
             bow_one(line, flat.q, work.tension[0], flat.x)
@@ -166,7 +166,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
         steps: int,
     ) -> int:
         for _ in range(steps):
-            flat.x[:] = 0.0
+            for i in range(line.load.size):
+                wires.x[i, :] = line.load[i]
             take_eight(operator.stiffness, wires.w, wires.x)
             take_eight(operator.rest, wires.v, wires.x)
             bow_eight(line, wires.q, work.tension, wires.x)
@@ -190,7 +191,7 @@ def _advance_plainly(
     for _ in range(steps):
         if (heads.step >= heads.last).all():
             return
-        wires.x[:] = -(model.stiffness @ wires.q + model.damping @ wires.v)
+        wires.x[:] = setup.line.load[:, None] - (model.stiffness @ wires.q + model.damping @ wires.v)
         for lane in range(wires.x.shape[1]):
             bow_one(setup.line, wires.q[:, lane], work.tension[lane], wires.x[:, lane])
         wires.x[:] = setup.factor.solve(wires.x)

@@ -82,7 +82,7 @@ def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) 
     static = factorise(model.stiffness)
     K = model.stiffness.tocsr()
     rest = (model.damping - beta * K).tocsr()
-    rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max()] = 0.0
+    rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max(initial=0.0)] = 0.0
     rest.eliminate_zeros()
     return Setup(model, scheme, _line(model, factor), factor, static, nominal, beta, K, rest)
 
@@ -194,6 +194,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         yielding=_columns(factor, model.dropper_rows.T.tocsc()),
         links=_links(model, factor),
         bows=Bowed(model.bows.index, model.bows.length, model.bows.gap),
+        load=model.load,
         supports=np.concatenate([wire.supports for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,

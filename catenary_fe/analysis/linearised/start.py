@@ -98,12 +98,12 @@ def static_contact(
     problem = _Contact(setup, chains)
     slack: list[int] = []
     off: list[int] = []
-    shifted = np.zeros(setup.model.size)
+    shifted = setup.static.solve(setup.line.load)
     for _ in range(_CHANGES):
         heads, forces, q, spring = problem.solve(slack, off, shifted)
         now = np.flatnonzero(spring <= 0).tolist()
         now_off = [j for j, force in enumerate(forces) if force < 0 or j in off]
-        before, shifted = shifted, setup.static.solve(bow_forces(setup.line, q))
+        before, shifted = shifted, setup.static.solve(setup.line.load + bow_forces(setup.line, q))
         if now == slack and now_off == off and np.abs(shifted - before).max() <= _SETTLED * np.abs(q).max():
             return Start(q, problem.started(heads, forces, q), np.maximum(spring, 0.0), speed)
         slack, off = now, now_off

@@ -22,13 +22,17 @@ class Line(Parameters):
     """A published line: wires, tensions and geometry, as far as they are known."""
 
     name: Text
+    """of the line"""
     source: Text
+    """where the numbers come from, and how sure they are"""
     contact_wire: Wire
+    """with its tension"""
     messenger_wire: Wire
+    """with its tension"""
     span_length: Positive
-    """[m]"""
+    """[m] of the usual span"""
     system_height: Positive
-    """[m]"""
+    """[m] between messenger wire and contact wire at the supports"""
     contact_wire_height: Positive | None = None
     """[m] above the rail, where known"""
     pre_sag: Number = 0.0
@@ -36,8 +40,9 @@ class Line(Parameters):
     stagger: Sideways | None = None
     """[m] to either side, where known"""
     stitch_wire: Wire | None = None
+    """with its tension; unset: the line has none"""
     stitch_wire_length: Positive | None = None
-    """[m]"""
+    """[m] along the track, half of it to each side of the support"""
     dropper: Dropper | None = None
     """what the droppers have in common, where known (position 0)"""
 
