@@ -19,19 +19,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.dropper_matrices import dropper_motion, elongation, turning_stiffness
-from catenary_fe.fe.installation import Installation, dropper_damping, element_pulls, point_masses
-from catenary_fe.fe.linearise import first_coordinate, mass_blocks, stiffness_blocks
+from catenary_fe.fe.cable import tangent_blocks
+from catenary_fe.fe.installation import Installation, element_pulls
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.modal import link_stiffness, links, spring_values, transformation
-from catenary_fe.fe.model import Model, build_model
-from catenary_fe.fe.solver import release, solve_static
-from catenary_fe.fe.wire import ALONG
+from catenary_fe.fe.system import System, assemble
 from catenary_fe.system import Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+ALONG = 0
 HELD = -1  # number of a coordinate that cannot move
 
 
@@ -131,97 +128,73 @@ class LinearModel:
 
 
 def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> LinearModel:
-    """The catenary's linearised model at static equilibrium.
-
-    Raises SolverError if there is no equilibrium.
-    """
-    model = build_model(catenary, mesh, installation)
-    mbs = model.mbs
-    mbs.Assemble()
-    solve_static(mbs, what="static state for the linearised run")
-    pulls = element_pulls(catenary, mesh)
-    wires = [_reduce(model, number, pull) for number, pull in enumerate(pulls)]
-    whole = mbs.systemData.ODE2Size()
-    gaps = sum(wire.gap_stiffness.size for wire in wires)
+    """The catenary's linearised model at static equilibrium."""
+    system = assemble(catenary, mesh, installation)
+    wires = _reduced_wires(system, catenary, mesh, installation)
+    whole, gaps = system.place.size, sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
-    moved, span = dropper_motion(model, whole + gaps)
-    rows = elongation(span) @ moved
-    stiffness, damping = np.array([d.stiffness for d in catenary.droppers]), dropper_damping(catenary)
-    pull = model.dropper_forces()
-    push = stiffness * (np.linalg.norm(span, axis=1) - model.dropper_lengths)
-    tension = np.where(pull > 0, pull, np.minimum(push, 0.0))
+    droppers = system.droppers
+    span = droppers.span(system.reference)
+    pull, push = droppers.tension(span), droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
     D = catenary.damping.alpha * M + catenary.damping.beta * K
-    D = D + rows.T @ _diagonal(damping) @ rows + _padded(spring_values(model, "damping"), gaps)
-    K = K + rows.T @ _diagonal(stiffness) @ rows + moved.T @ turning_stiffness(span, pull) @ moved
-    K = K + _padded(spring_values(model, "stiffness") + link_stiffness(model), gaps)
-    masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
-    M = M + _padded(_diagonal(np.outer(masses, np.repeat([1.0, 0.0], model.axes)).ravel()), gaps)
-    T, place = _kept(model, wires, gaps)
+    D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping), gaps)
+    K = K + _padded(system.spring_stiffness(), gaps)
+    M = M + _padded(system.mass - system.wire_mass, gaps)
+    T, place = _kept(system, mesh, installation, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
-    width, up = model.node_width, model.axes - 1
-    swinging = _swinging_links(model, place)
-    contacts = contact_lines(model, place, mbs.systemData.GetODE2Coordinates())
-    release(mbs)
+    up = system.axes - 1
     return LinearModel(
         mass=M,
         stiffness=K,
         damping=D,
-        dropper_rows=(rows @ T).tocsr(),
-        dropper_stiffness=stiffness,
-        dropper_damping=damping,
-        dropper_tension=tension,
-        contacts=contacts,
-        heights=place[width * np.arange(mesh.first_nodes[-1]) + up],
+        dropper_rows=(system.elongations() @ T[:whole]).tocsr(),
+        dropper_stiffness=droppers.stiffness,
+        dropper_damping=droppers.damping,
+        dropper_tension=np.where(pull > 0, pull, np.minimum(push, 0.0)),
+        contacts=contact_lines(system, mesh, installation, place),
+        heights=place[2 * system.axes * np.arange(mesh.first_nodes[-1]) + up],
         tensions=place[whole:],
         rest_tension=np.concatenate([w.tension for w in wires]),
-        links=swinging,
-        bows=_bows(model, wires, place),
-        in_space=model.axes == 3,
+        links=_swinging_links(system, place),
+        bows=_bows(system, installation, wires, place),
+        in_space=system.in_space,
     )
 
 
-def _bows(model: Model, wires: list[_ReducedWire], place: Integers) -> Bows:
-    across = model.axes - 1
+def _bows(system: System, installation: Installation, wires: list[_ReducedWire], place: Integers) -> Bows:
+    across = system.axes - 1
     index, length, gap, first = [], [], [], 0
-    for wire, items in zip(wires, model.wires, strict=True):
+    for wire, line in zip(wires, installation.lines, strict=True):
         for axis in range(across):
             index.append(place[wire.across[:, axis::across]])
-            length.append(items.line.lengths)
+            length.append(line.lengths)
             gap.append(first + wire.gap_of)
         first += wire.gap_stiffness.size
     return Bows(np.concatenate(index), np.concatenate(length), np.concatenate(gap))
 
 
-def _swinging_links(model: Model, place: Integers) -> SwingingLinks:
-    found = links(model)
-    first = np.array([link.first for link in found], dtype=np.int64)
-    span = np.array([link.pivot - link.point for link in found]).reshape(len(found), model.axes)
+def _swinging_links(system: System, place: Integers) -> SwingingLinks:
+    arms, axes = system.arms, system.axes
     return SwingingLinks(
-        index=place[first[:, None] + [model.axes - 2, model.axes - 1]],
-        span=span[:, -2:],
-        length=np.array([link.length for link in found], dtype=float),
-        stiffness=np.array([link.stiffness for link in found], dtype=float),
+        index=place[arms.first[:, None] + [axes - 2, axes - 1]],
+        span=arms.span(system.reference)[:, -2:],
+        length=arms.length,
+        stiffness=arms.stiffness,
     )
 
 
-def contact_lines(model: Model, place: Integers, coordinates: Floats) -> tuple[ContactLine, ...]:
-    """The contact wires with their coordinates at ``place``, at rest at these coordinates of the model."""
-    lines = []
-    shapes = model.wire_shapes(coordinates)
-    axes, up = model.axes, model.axes - 1
-    for items, wire, first, q in zip(
-        model.contacts, model.mesh.wires, model.mesh.first_nodes, shapes, strict=False
-    ):
-        nodes = model.node_width * (first + np.arange(len(items.nodes)))
-        index = place[nodes[:, None] + [up, up + axes]]
+def contact_lines(
+    system: System, mesh: Mesh, installation: Installation, place: Integers
+) -> tuple[ContactLine, ...]:
+    """The contact wires where they were installed, with their coordinates at ``place``."""
+    found, axes, up = [], system.axes, system.axes - 1
+    for number, line in enumerate(installation.lines[: mesh.contact_wires]):
+        nodes = 2 * axes * (mesh.first_nodes[number] + np.arange(line.x.size))
+        index, q = place[nodes[:, None] + [up, up + axes]], line.coordinates()
         lateral = q[:, [1, 1 + axes]] if axes == 3 else np.zeros((len(q), 2))
-        lines.append(
-            ContactLine(
-                items.line.x, items.line.lengths, q[:, [up, up + axes]], lateral, index,
-                index[wire.supports, 0],
-            )
-        )  # fmt: skip
-    return tuple(lines)
+        static, supports = q[:, [up, up + axes]], index[mesh.wires[number].supports, 0]
+        found.append(ContactLine(line.x, line.lengths, static, lateral, index, supports))
+    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -250,13 +223,31 @@ class _ReducedWire:
     tension: Floats
 
 
-def _reduce(model: Model, number: int, pulls: Floats) -> _ReducedWire:
-    """Condense slopes along the track in each element, and positions along the track between clamps."""
-    mbs, wire, width = model.mbs, model.wires[number], model.node_width
-    K, M = stiffness_blocks(mbs, wire), mass_blocks(wire)
-    index = first_coordinate(mbs, wire) + width * np.arange(len(M))[:, None] + np.arange(2 * width)
+def _reduced_wires(
+    system: System, catenary: Catenary, mesh: Mesh, installation: Installation
+) -> list[_ReducedWire]:
+    rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
+    stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
+    found, begin = [], 0
+    for number, pull in enumerate(element_pulls(catenary, mesh)):
+        part = slice(begin, begin + pull.size)
+        begin += pull.size
+        index, x = system.elements()[part], installation.lines[number].x
+        found.append(_reduced(stiffness[part], mass[part], index, _clamps(mesh, number), x, pull))
+    return found
+
+
+def _reduced(
+    K: Floats, M: Floats, index: Integers, clamps: Integers, x: Floats, pull: Floats
+) -> _ReducedWire:
+    """Condense slopes along the track in each element, and positions along the track between clamps.
+
+    K, M, index : of a wire's elements and their coordinates
+    clamps, x, pull : nodes, [m] stations, [N] nominal along the track
+    """
+    width = index.shape[1] // 2
     ends = np.array([ALONG, width + ALONG])
-    slopes = ends + model.axes
+    slopes = ends + width // 2
     across = np.setdiff1d(np.arange(2 * width), [*ends, *slopes])
     kept = np.concatenate([ends, across])
     inner = np.linalg.solve(K[:, slopes[:, None], slopes], K[:, slopes[:, None], kept])
@@ -264,8 +255,7 @@ def _reduce(model: Model, number: int, pulls: Floats) -> _ReducedWire:
     k = (K[:, 0, 0] - K[:, 0, 1]) / 2
     lengthening = (K[:, 1, 2:] - K[:, 0, 2:]) / (2 * k[:, None])
     stiffness = K[:, 2:, 2:] - k[:, None, None] * lengthening[:, :, None] * lengthening[:, None, :]
-    clamps = _clamps(model, number)
-    gap_of = np.searchsorted(clamps, np.arange(len(wire.elements)), side="right") - 1
+    gap_of = np.searchsorted(clamps, np.arange(len(M)), side="right") - 1
     element_mass = M[:, ends[:, None], ends].sum(axis=(1, 2))  # of a wire moved along the track
     first = index[0, 0] + width * clamps
     return _ReducedWire(
@@ -277,14 +267,13 @@ def _reduce(model: Model, number: int, pulls: Floats) -> _ReducedWire:
         gap_ends=np.column_stack([first[:-1], first[1:]]),
         gap_stiffness=1 / np.bincount(gap_of, 1 / k),
         gap_mass=np.bincount(gap_of, element_mass).astype(float),
-        gap_x=wire.line.x[clamps],
-        tension=pulls[clamps[:-1]],
+        gap_x=x[clamps],
+        tension=pull[clamps[:-1]],
     )
 
 
-def _clamps(model: Model, number: int) -> Integers:
+def _clamps(mesh: Mesh, number: int) -> Integers:
     """Nodes of a wire that something is fixed to, its ends among them."""
-    mesh = model.mesh
     fixed = [mesh.lower.node[mesh.lower.on(number)], mesh.upper.node[mesh.upper.on(number)]]
     fixed += [mesh.wires[number].supports, np.array([0, mesh.wires[number].x.size - 1])]
     if number == mesh.contact_wires:
@@ -338,20 +327,22 @@ class _Triplets:
         return values, (rows, columns)
 
 
-def _kept(model: Model, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers]:
+def _kept(
+    system: System, mesh: Mesh, installation: Installation, wires: list[_ReducedWire], gaps: int
+) -> tuple[Any, Integers]:
     """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or HELD.
 
     A gap's tension comes just before the gap's end.
     """
     from scipy.sparse import block_diag, identity
 
-    T = block_diag([transformation(model), identity(gaps)]).tocsc()
-    whole = T.shape[0] - gaps
+    T = block_diag([system.transformation, identity(gaps)]).tocsc()
+    whole, width = T.shape[0] - gaps, 2 * system.axes
     station = np.full(T.shape[0], np.nan)
-    for wire, items, first in zip(wires, model.wires, model.mesh.first_nodes, strict=False):
-        nodes = model.node_width * (first + np.arange(items.line.x.size))
-        across = np.setdiff1d(np.arange(model.node_width), [ALONG, ALONG + model.axes])
-        station[(nodes[:, None] + across).ravel()] = np.repeat(items.line.x, across.size)
+    for wire, line, first in zip(wires, installation.lines, mesh.first_nodes, strict=False):
+        nodes = width * (first + np.arange(line.x.size))
+        across = np.setdiff1d(np.arange(width), [ALONG, ALONG + system.axes])
+        station[(nodes[:, None] + across).ravel()] = np.repeat(line.x, across.size)
         station[wire.gap_ends[:, 1]] = wire.gap_x[1:]
         station[wire.gap_ends[0, 0]] = wire.gap_x[0]
     station[whole:] = np.concatenate([wire.gap_x[1:] for wire in wires])

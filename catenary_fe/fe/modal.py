@@ -7,16 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.dropper_matrices import taut_droppers
-from catenary_fe.fe.installation import Installation, point_masses
-from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Model, build_model
-from catenary_fe.fe.solver import release, solve_static
+from catenary_fe.fe.system import System, assemble
 from catenary_fe.system import Catenary, InputError, SolverError
 
 Floats = NDArray[np.float64]
@@ -69,31 +65,18 @@ class EigenPairs:
 def linear_system(catenary: Catenary, mesh: Mesh, installation: Installation) -> LinearSystem:
     """Mass and stiffness matrix of a catenary in static equilibrium.
 
-    Raises SolverError if there is no equilibrium, InputError where a dropper is slack in it.
+    Raises InputError where a dropper is slack in it.
     """
-    model = build_model(catenary, mesh, installation)
-    mbs = model.mbs
-    mbs.Assemble()
-    solve_static(mbs, what="static state for modal analysis")
-    masses, _ = point_masses(catenary, mesh, installation.dropper_lengths)
-    M, K = mass_matrix(mbs, model.wires), stiffness_matrix(mbs, model.wires)
-    _check_taut(model)
-    droppers, dropper_damping = taut_droppers(model)
-    D = catenary.damping.alpha * M + catenary.damping.beta * K
-    D = D + dropper_damping + spring_values(model, "damping")
-    moves = np.repeat([1.0, 0.0], model.axes)
-    M = M + _diagonal(np.outer(masses, moves).ravel())
-    K = K + droppers + spring_values(model, "stiffness") + link_stiffness(model)
-    T = transformation(model)
-    M, K, D = (T.T @ matrix @ T for matrix in (M, K, D))
-    release(mbs)
-    return LinearSystem(M, K, D, T, model.node_width)
+    system = assemble(catenary, mesh, installation)
+    _check_taut(catenary, system)
+    damping = system.free(system.damping() + system.taut_damping())
+    stiffness = system.tangent(np.zeros(system.place.size))
+    return LinearSystem(system.free(system.mass), stiffness, damping, system.transformation, 2 * system.axes)
 
 
-def _check_taut(model: Model) -> None:
-    slack = np.flatnonzero(model.dropper_forces() <= 0)
+def _check_taut(catenary: Catenary, system: System) -> None:
+    slack = np.flatnonzero(system.droppers.tension(system.droppers.span(system.reference)) <= 0)
     if slack.size:
-        catenary = model.catenary
         dropper, span = catenary.droppers[slack[0]], catenary.dropper_spans[slack[0]]
         raise InputError(
             f"span {span}: the dropper at {dropper.position:g} m is slack at rest ({slack.size} of"
@@ -155,115 +138,3 @@ def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:
         raise SolverError(f"modal analysis: no eigenpairs found ({error}); look for a loose part") from None
     order = np.argsort(squares)
     return squares[order], vectors[:, order]
-
-
-def _diagonal(values: Floats) -> Any:
-    from scipy.sparse import diags
-
-    return diags(values).tocsr()
-
-
-def transformation(model: Model) -> Any:
-    """Sparse, shape (coordinates, free ones): held coordinates stay 0, clamped ones follow the other wire."""
-    from scipy.sparse import csr_matrix
-
-    mbs, size = model.mbs, model.mbs.systemData.ODE2Size()
-    leader = np.arange(size)
-    held = np.zeros(size, dtype=bool)
-    for item in _objects(model, "ConnectorCoordinate"):
-        first, second = item["markerNumbers"]
-        if int(first) == model.ground:
-            held[_coordinate(mbs, second)] = True
-        else:
-            leader[_coordinate(mbs, second)] = _coordinate(mbs, first)
-    leads = (leader == np.arange(size)) & ~held
-    column = np.cumsum(leads) - 1
-    rows = np.flatnonzero(~held[leader] & ~held)
-    entries = np.ones(rows.size), (rows, column[leader[rows]])
-    return csr_matrix(entries, shape=(size, int(leads.sum())))
-
-
-def _coordinate(mbs: exu.MainSystem, marker: int) -> int:
-    item = mbs.GetMarker(marker)
-    return int(mbs.systemData.GetNodeLTGODE2(item["nodeNumber"])[item["coordinate"]])
-
-
-def _objects(model: Model, kind: str) -> list[dict[str, Any]]:
-    mbs = model.mbs
-    elements = {e for wire in model.wires for e in wire.elements}  # many, and slow to look at
-    numbers = [i for i in range(mbs.systemData.NumberOfObjects()) if i not in elements]
-    items = [mbs.GetObject(i) for i in numbers]
-    return [item for item in items if item["objectType"] == kind]
-
-
-def spring_values(model: Model, what: str) -> Any:
-    """Stiffness or damping of steady arms and supports: vertical springs to the ground."""
-    diagonal = np.zeros(model.mbs.systemData.ODE2Size())
-    for item in _objects(model, "ConnectorCoordinateSpringDamper"):
-        diagonal[_coordinate(model.mbs, item["markerNumbers"][1])] += item[what]
-    return _diagonal(diagonal)
-
-
-@dataclass(frozen=True)
-class Link:
-    """A steady arm that is a link: a stiff spring from a wire's node to a fixed pivot.
-
-    first : number of the node's first coordinate
-    point, pivot : [m], shape (axes,), the node now, and the other end
-    length : [m], without force
-    stiffness : [N/m]
-    """
-
-    first: int
-    point: Floats
-    pivot: Floats
-    length: float
-    stiffness: float
-
-
-def links(model: Model) -> list[Link]:
-    """Steady arms that are links to the ground."""
-    mbs, position = model.mbs, exu.OutputVariableType.Position
-    found = []
-    for item in _objects(model, "ConnectorSpringDamper"):
-        if item["springForceUserFunction"]:
-            continue
-        node = mbs.GetMarker(item["markerNumbers"][0])["nodeNumber"]
-        point, pivot = (
-            np.array(mbs.GetMarkerOutput(m, position))[: model.axes] for m in item["markerNumbers"]
-        )
-        first = int(mbs.systemData.GetNodeLTGODE2(node)[0])
-        found.append(Link(first, point, pivot, item["referenceLength"], item["stiffness"]))
-    return found
-
-
-def link_stiffness(model: Model) -> Any:
-    """Stiffness matrix of :func:`links`."""
-    from scipy.sparse import coo_matrix
-
-    size = model.mbs.systemData.ODE2Size()
-    matrix = coo_matrix((size, size)).tocsr()
-    for link in links(model):
-        span = link.pivot - link.point
-        block = link_blocks(span[None], np.array([link.length]), np.array([link.stiffness]))
-        index = link.first + np.arange(span.size)
-        place = np.repeat(index, index.size), np.tile(index, index.size)
-        matrix = matrix + coo_matrix((block.ravel(), place), shape=(size, size)).tocsr()
-    return matrix
-
-
-def link_blocks(span: Floats, length: Floats, stiffness: Floats, *, pulls_only: bool = False) -> Floats:
-    """Stiffness [N/m] of springs at one end, shape (springs, axes, axes).
-
-    span : [m], shape (springs, axes), from end to end
-    length, stiffness : [m] without force, [N/m], shape (springs,)
-    pulls_only : springs that would push count as just taut
-    """
-    now = np.linalg.norm(span, axis=1)
-    direction = span / now[:, None]
-    axial = direction[:, :, None] * direction[:, None, :]
-    tension = stiffness * (now - length)
-    tension = np.maximum(tension, 0.0) if pulls_only else tension
-    across = (tension / now)[:, None, None] * (np.eye(span.shape[1]) - axial)
-    blocks: Floats = stiffness[:, None, None] * axial + across
-    return blocks

@@ -127,6 +127,7 @@ class System:
     first : shape (elements,), number of each cable element's first coordinate among all; those of its two
         nodes follow one another
     cables : the elements
+    element_mass : [kg], shape (elements, 4 * axes, 4 * axes)
     wire_mass, mass : sparse, [kg], over all coordinates: of the wires, and with what they carry
     droppers, arms : springs
     ground_stiffness, ground_damping : [N/m], [N s/m], shape (all,), of springs to the ground
@@ -139,6 +140,7 @@ class System:
     place: Integers
     first: Integers
     cables: Cables
+    element_mass: Floats
     wire_mass: Any
     mass: Any
     droppers: Springs
@@ -181,7 +183,7 @@ class System:
     def out_of_balance(self, moved: Floats) -> Floats:
         """[N], shape (all,): constant forces less what the line answers to displacements ``moved``."""
         total = self.reference + moved
-        index = self._elements()
+        index = self.elements()
         residual = self.force - self.ground_stiffness * moved
         values = inner_forces(self.cables, total[index].reshape(-1, 4, self.axes))
         residual -= np.bincount(index.ravel(), values.ravel(), minlength=residual.size)
@@ -196,7 +198,7 @@ class System:
         moved : shape (all,), displacements
         taut : all droppers count as taut, else slack ones are left out
         """
-        total, index = self.reference + moved, self._elements()
+        total, index = self.reference + moved, self.elements()
         parts = [(index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes)))]
         for springs in (self.droppers, self.arms):
             parts.append((springs.index(), springs.blocks(total, taut=taut)))
@@ -204,14 +206,70 @@ class System:
         parts.append((diagonal, self.ground_stiffness[:, None, None]))
         return self._assembled(parts)
 
+    def wire_stiffness(self) -> Any:
+        """Stiffness of the wires alone where they were installed, over all coordinates, sparse."""
+        from scipy.sparse import coo_matrix
+
+        index, size = self.elements(), self.place.size
+        blocks = tangent_blocks(self.cables, self.reference[index].reshape(-1, 4, self.axes))
+        m = index.shape[1]
+        place = np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel()
+        return coo_matrix((blocks.ravel(), place), shape=(size, size)).tocsr()
+
+    def damping(self) -> Any:
+        """Damping over all coordinates, without that of droppers, sparse: α M + β K of the wires, springs.
+
+        β K is of the wires with their tension's stiffness; what supports and arms damp is given with them.
+        """
+        from scipy.sparse import diags
+
+        rayleigh = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
+        return (rayleigh + diags(self.ground_damping)).tocsr()
+
+    def elongations(self) -> Any:
+        """Sparse, shape (droppers, all): each dropper's elongation with the coordinates, at rest."""
+        from scipy.sparse import coo_matrix
+
+        span, index = self.droppers.span(self.reference), self.droppers.index()
+        direction = span / np.linalg.norm(span, axis=1)[:, None]
+        values = np.hstack([-direction, direction])
+        rows = np.repeat(np.arange(len(index)), index.shape[1])
+        shape = (len(index), self.place.size)
+        return coo_matrix((values.ravel(), (rows, index.ravel())), shape=shape).tocsr()
+
+    def taut_damping(self) -> Any:
+        """Damping of all droppers, taut, over all coordinates, sparse."""
+        from scipy.sparse import diags
+
+        rows = self.elongations()
+        return (rows.T @ diags(self.droppers.damping) @ rows).tocsr()
+
+    def spring_stiffness(self) -> Any:
+        """Stiffness of droppers (taut), arms and supports at rest, over all coordinates, sparse."""
+        from scipy.sparse import coo_matrix, diags
+
+        size = self.place.size
+        total = diags(self.ground_stiffness).tocsr()
+        for springs in (self.droppers, self.arms):
+            index, blocks = springs.index(), springs.blocks(self.reference, taut=True)
+            m = index.shape[1]
+            place = np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel()
+            total = total + coo_matrix((blocks.ravel(), place), shape=(size, size)).tocsr()
+        return total
+
+    def free(self, matrix: Any) -> Any:
+        """A matrix over all coordinates as one over the free ones."""
+        return (self.transformation.T @ matrix @ self.transformation).tocsr()
+
     def energy(self, moved: Floats) -> float:
         """[J] stored in wires and springs, with the potential of the constant forces."""
         total = self.reference + moved
-        stored = strain_energy(self.cables, total[self._elements()].reshape(-1, 4, self.axes)).sum()
+        stored = strain_energy(self.cables, total[self.elements()].reshape(-1, 4, self.axes)).sum()
         stored += self.droppers.energy(total) + self.arms.energy(total)
         return float(stored + (self.ground_stiffness * moved**2).sum() / 2 - self.force @ moved)
 
-    def _elements(self) -> Integers:
+    def elements(self) -> Integers:
+        """Shape (elements, 4 * axes): coordinates of each cable element."""
         return self.first[:, None] + np.arange(4 * self.axes)
 
     def _assembled(self, parts: list[tuple[Integers, Floats]]) -> Any:
@@ -269,6 +327,7 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
             bending_stiffness=np.repeat([float(k.bending_stiffness) for k in kinds], counts),
             rest_strain=np.repeat([-k.tension / k.axial_stiffness for k in kinds], counts),
         ),
+        element_mass=blocks,
         wire_mass=wire_mass,
         mass=(wire_mass + diags(np.repeat(masses, width) * points.ravel())).tocsr(),
         droppers=_droppers(catenary, mesh, installation),

@@ -17,8 +17,12 @@ def parts(short_shape):
     """Model, arrays, and the step's matrix at rest with its factor."""
     model = nonlinear_model(short_shape.catenary, short_shape.mesh, short_shape.installation)
     scheme = make_scheme(TimeSettings())
-    matrix = model.mass + scheme.g * model.tangent_damping + scheme.b * model.tangent_at(model.start)
-    return model, make_system(model), matrix.tocsc(), make_factor(model, scheme, model.start)
+    matrix = (
+        model.mass
+        + scheme.g * model.tangent_damping
+        + scheme.b * model.system.tangent(0 * model.system.reference)
+    )
+    return model, make_system(model), matrix.tocsc(), make_factor(model, scheme, 0 * model.system.reference)
 
 
 def solved(matrix, right):
@@ -67,7 +71,7 @@ def test_a_dropper_that_lacks_stiffness_softens_the_solution(parts, lack):
     slack, i = _slack(system), 14
     scheme = make_scheme(TimeSettings())
     slack.row[i] = [0.1, -1.0, -0.1, 1.0]
-    slack.lack[i] = lack * scheme.b * model.droppers.stiffness[i]
+    slack.lack[i] = lack * scheme.b * model.system.droppers.stiffness[i]
     row = np.zeros((1, model.size))
     row[0, slack.at[i]] = slack.row[i]
     right = 0.3 * row[0]

@@ -50,16 +50,4 @@ class EnergyRecord:
         self._values.append(total)
 
     def _of_wires(self, q: Floats, v: Floats) -> float:
-        from catenary_fe.fe.cable import strain_energy
-
-        model, axes = self._model, np.arange(self._model.axes)
-        total = model.reference + np.where(model.place >= 0, q[model.place], 0.0)
-        index = model.first[:, None] + np.arange(4 * model.axes)
-        stored = strain_energy(model.cables, total[index].reshape(-1, 4, model.axes)).sum()
-        for springs, two_ends in ((model.droppers, True), (model.links, False)):
-            upper = total[springs.last[:, None] + axes] if two_ends else springs.pivot
-            span = np.linalg.norm(upper - total[springs.first[:, None] + axes], axis=1)
-            stretch = span - springs.length
-            stored += springs.stiffness @ (np.maximum(stretch, 0.0) if two_ends else stretch) ** 2 / 2
-        stored += model.ground_stiffness @ q**2 / 2 - model.force @ q
-        return float(stored + v @ (model.mass @ v) / 2)
+        return self._model.system.energy(self._model.system.spread(q)) + float(v @ (self._model.mass @ v) / 2)

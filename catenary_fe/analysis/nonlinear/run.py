@@ -27,7 +27,7 @@ from catenary_fe.system import AnyPantograph, SolverError
 
 if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
-    from catenary_fe.fe.nonlinear_model import ContactStart, NonlinearModel
+    from catenary_fe.fe.nonlinear_model import ContactStart
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -55,7 +55,7 @@ class NonlinearCatenary:
         self._model = nonlinear_model(shape.catenary, shape.mesh, shape.installation)
         self._system = make_system(self._model)
         self._stations = make_stations(self._model, shape)
-        self._factor = make_factor(self._model, self._scheme, self._model.start)
+        self._factor = make_factor(self._model, self._scheme, 0 * self._model.system.reference)
         self.iterations = 0
         self._notes: list[str] = []
 
@@ -83,7 +83,7 @@ class NonlinearCatenary:
         start = self._start(pantographs, positions, speed, begin)
         sizes = _sizes(start.chains, steps, self._every)
         heads = make_heads(1, sizes, shape.catenary.contact_wire_height)
-        total = self._model.reference + begin.wires
+        total = self._model.system.reference + begin.wires
         records = self._records(sizes, total)
         load_heads(heads, records, 0, self._scheme, start, steps)
         state = State.at(start, total, self._system, heads, sizes)
@@ -101,7 +101,7 @@ class NonlinearCatenary:
                 self._advance(state, records, start, count)
                 done += count
                 if count == block:
-                    course.read(self._scheme, state.motion.total - self._model.reference)
+                    course.read(self._scheme, state.motion.total - self._model.system.reference)
                 if progress:
                     progress(done / steps)
                 if checkpoint:
@@ -129,7 +129,7 @@ class NonlinearCatenary:
         for parts in PARTS:
             state.restore(before)
             scheme = make_scheme(replace(self._time, step=self._time.step / parts))
-            factor = make_factor(self._model, scheme, state.motion.total - self._model.reference)
+            factor = make_factor(self._model, scheme, state.motion.total - self._model.system.reference)
             state.rescale(self._scheme, scheme, start.chains)
             done = self._take(state, records, steps, parts, scheme, factor)
             state.rescale(scheme, self._scheme, start.chains)
@@ -190,15 +190,18 @@ class NonlinearCatenary:
             )
             chains.append(replace(chain, uplift=uplift, position=float(position), q=q, touches=touches))
         free = np.zeros(self._system.force.size)
-        moves = model.place >= 0
-        free[model.place[moves]] = begin.wires[moves]
-        return Start(free, chains, _tensions(model, begin.wires), speed)
+        place = model.system.place
+        moves = place >= 0
+        free[place[moves]] = begin.wires[moves]
+        droppers = model.system.droppers
+        tensions = droppers.tension(droppers.span(model.system.reference + begin.wires))
+        return Start(free, chains, tensions, speed)
 
     def _height(self, begin: ContactStart, wire: int, position: float) -> float:
         from catenary_fe.fe.cable import hermite
 
         line = self._model.contacts[wire]
-        axes, up = self._model.axes, self._model.axes - 1
+        axes, up = self._model.system.axes, self._model.system.axes - 1
         first = int(self._shape.mesh.first_nodes[wire])
         e = int(np.clip(np.searchsorted(line.x, position, side="right") - 1, 0, line.x.size - 2))
         xi = (position - line.x[e]) / (line.x[e + 1] - line.x[e])
@@ -216,12 +219,3 @@ def _sizes(chains: Sequence[Chain], steps: int, every: int) -> Sizes:
         steps=steps,
         shapes=steps // every + 1 if every else 0,
     )
-
-
-def _tensions(model: NonlinearModel, moved: Floats) -> Floats:
-    """[N], shape (droppers,), at rest."""
-    total, axes = model.reference + moved, np.arange(model.axes)
-    droppers = model.droppers
-    span = total[droppers.last[:, None] + axes] - total[droppers.first[:, None] + axes]
-    force: Floats = droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
-    return np.maximum(force, 0.0)

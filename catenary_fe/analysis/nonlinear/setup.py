@@ -14,7 +14,8 @@ from catenary_fe.analysis.nonlinear.cables import Elements
 from catenary_fe.equilibrium import Shape
 
 if TYPE_CHECKING:
-    from catenary_fe.fe.nonlinear_model import NonlinearModel, Springs
+    from catenary_fe.fe.nonlinear_model import NonlinearModel
+    from catenary_fe.fe.system import Springs
 
 Floats = NDArray[np.float64]
 
@@ -22,20 +23,21 @@ Floats = NDArray[np.float64]
 def make_system(model: NonlinearModel) -> System:
     """The equations of motion, filled up to a multiple of four coordinates."""
     more = -model.size % 4
-    cables = model.cables
+    line = model.system
+    cables = line.cables
     idle = np.zeros(more)
     return System(
-        reference=model.reference,
-        place=model.place,
+        reference=line.reference,
+        place=line.place,
         elements=Elements(
-            model.first,
+            line.first,
             cables.length,
             cables.axial_stiffness,
             cables.bending_stiffness,
             1 + cables.rest_strain,
         ),
-        droppers=_ends(model.droppers),
-        links=_ends(model.links),
+        droppers=_ends(line.droppers),
+        links=_ends(line.arms),
         ground=np.concatenate([model.ground_stiffness, idle]),
         force=np.concatenate([model.force, idle]),
         mass=quads(_padded(model.mass, more, 1.0)),
@@ -57,8 +59,8 @@ def _padded(matrix: Any, more: int, diagonal: float) -> Any:
 
 def make_stations(model: NonlinearModel, shape: Shape) -> Stations:
     """Contact wires and heights."""
-    contacts, mesh = model.contacts, shape.mesh
-    up, width = model.axes - 1, 2 * model.axes
+    contacts, mesh, axes = model.contacts, shape.mesh, model.system.axes
+    up, width = axes - 1, 2 * axes
     supports = [
         width * (first + wire.supports) + up
         for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False)
@@ -81,7 +83,7 @@ def make_stations(model: NonlinearModel, shape: Shape) -> Stations:
 
 def make_factor(model: NonlinearModel, scheme: Scheme, moved: Floats) -> Factor:
     """Factorise the step's matrix where all coordinates are displaced like this."""
-    matrix = model.mass + scheme.g * model.tangent_damping + scheme.b * model.tangent_at(moved)
+    matrix = model.mass + scheme.g * model.tangent_damping + scheme.b * model.system.tangent(moved)
     factor = factorise(_padded(matrix, -model.size % 4, 1.0))
     return Factor(
         quads(factor.L, "lower"),
