@@ -131,6 +131,7 @@ def sweep(
     elif not quiet:
         _print(rows, axes)
         click.echo(f"table and pictures in {output}")
+    if not quiet:
         _say_lengths(cases)
     failed = [record for record in records if "error" in record]
     for record in failed:

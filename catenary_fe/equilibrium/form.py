@@ -14,6 +14,7 @@ from catenary_fe.equilibrium.form_checks import (
     check_links,
     check_pulls,
     check_room,
+    check_stretch,
     dropper_names,
     given_lengths,
 )
@@ -60,6 +61,7 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
         distance = np.linalg.norm(spread, axis=1)
         tension = forces.pull * distance / spread[:, -1]
         lengths = distance - tension / np.array([d.stiffness for d in catenary.droppers])
+        check_stretch(catenary, distance, tension)
         weight = GRAVITY * np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
         lean = spread[:, 1] / spread[:, -1] if wires.axes == 3 else none
         forces = DropperForces(forces.pull, lean, forces.pull / spread[:, -1], weight)
@@ -72,7 +74,6 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
         )
     if wires.axes == 3:
         check_links(catenary, wires.arm_forces)
-    check_room(catenary, lengths)
     installation = Installation(tuple(lines), lengths, wires.arm_forces, wires.support_forces)
     return _verified(catenary, settings, wires.mesh, installation)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.arguments import numbers
 from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
@@ -49,6 +50,23 @@ def check_room(catenary: Catenary, heights: Floats) -> None:
         " system_height or the messenger wire's tension"
         for name, height in zip(dropper_names(catenary), heights, strict=True)
         if height <= 0
+    )
+
+
+def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> None:
+    """Raises InputError for droppers so soft that their tension stretches them from nothing to their distance.
+
+    distances : [m], shape (droppers,), between their clamps
+    tensions : [N], shape (droppers,)
+    """
+    stiffness = [d.stiffness for d in catenary.droppers]
+    _report(
+        f"{name}: stiffness = {k:g} N/m is too small: its tension of {tension:.0f} N would stretch it by"
+        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it; look at the unit"
+        for name, k, distance, tension in zip(
+            dropper_names(catenary), stiffness, distances, tensions, strict=True
+        )
+        if tension / k >= distance
     )
 
 
@@ -96,7 +114,7 @@ def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) 
         if missing:
             raise InputError(f"{missing[0]} has no length ({len(missing)} droppers in all); give all lengths")
         lengths = np.array(given, dtype=float)
-    values = np.asarray(lengths, dtype=float)
+    values = numbers("lengths", lengths)
     if values.shape != (len(names),):
         raise InputError(f"{values.size} dropper lengths for {len(names)} droppers: give one each")
     heights = catenary.messenger_support_heights

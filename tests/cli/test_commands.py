@@ -50,27 +50,6 @@ def test_form(capsys, layout, tmp_path):
     assert "dropper schedule" in out
 
 
-def test_given_lengths(capsys, layout, tmp_path):
-    code, _, err = call(capsys, "form", layout, "--given-lengths")
-    assert code == 3
-    assert "span 1: dropper 1 at 5 m has no length" in err
-    rows = json.loads(call(capsys, "form", layout, "--json")[1])["droppers"]
-    spans = ""
-    for number in range(1, 5):
-        entries = ", ".join(
-            f"{{ position = {r['position_m']}, length = {r['length_m']} }}"
-            for r in rows
-            if r["span"] == number
-        )
-        spans += f"[[span]]\nlength = 60.0\ndroppers = [{entries}]\n"
-    text = Path(layout).read_text()
-    path = tmp_path / "given.toml"
-    path.write_text(text[: text.index("[[span]]")] + spans)
-    code, out, _ = call(capsys, "form", path, "--given-lengths", "--json")
-    assert code == 0
-    assert max(abs(r["contact_wire_height_error_mm"]) for r in json.loads(out)["droppers"]) < 0.1
-
-
 def test_static(capsys, layout, tmp_path):
     code, out, err = call(
         capsys, "static", layout, "--json", "--quiet", "--force", 150, "-o", tmp_path / "out"
