@@ -6,13 +6,15 @@ import logging
 
 import numpy as np
 
-from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modes import Modes, WireShapes
-from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, number, whole
 
+_HIGHEST = 1e4  # [Hz] no mesh of a line resolves more
 _log = logging.getLogger(__name__)
 
 
+@checked
 def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
     """Eigenfrequencies and shapes about the static state, droppers taut; sparse, so that long lines work.
 
@@ -25,11 +27,10 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
     """
     from catenary_fe.fe.modal import linear_system, solve_eigen
 
-    check_shape(shape)
-    if count is not None and count < 1:
-        raise InputError(f"modes: count = {count}: must be at least 1")
-    if below is not None and not (np.isfinite(below) and below > 0):
-        raise InputError(f"modes: below = {below!r} Hz: must be above 0")
+    if count is not None:
+        whole("modes: count", count, least=1)
+    if below is not None:
+        number("modes: below", below, "Hz", above=0.0, most=_HIGHEST)
     system = linear_system(shape.catenary, shape.mesh, shape.installation)
     nodes = [wire.x.size for wire in shape.mesh.wires]
     wanted = count or (40 if below is None else _expected(shape, below))

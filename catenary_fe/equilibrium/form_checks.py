@@ -54,7 +54,7 @@ def check_room(catenary: Catenary, heights: Floats) -> None:
 
 
 def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> None:
-    """Raises InputError for droppers so soft that their tension stretches them from nothing to their distance.
+    """Raises InputError for droppers so soft that their tension stretches them from no length at all.
 
     distances : [m], shape (droppers,), between their clamps
     tensions : [N], shape (droppers,)
@@ -62,7 +62,7 @@ def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> No
     stiffness = [d.stiffness for d in catenary.droppers]
     _report(
         f"{name}: stiffness = {k:g} N/m is too small: its tension of {tension:.0f} N would stretch it by"
-        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it; look at the unit"
+        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it, look at its unit"
         for name, k, distance, tension in zip(
             dropper_names(catenary), stiffness, distances, tensions, strict=True
         )

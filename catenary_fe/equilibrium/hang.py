@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.equilibrium import form
-from catenary_fe.equilibrium.form_checks import check_catenary
 from catenary_fe.equilibrium.shape import Shape
 from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.system import Catenary
-from catenary_fe.system.arguments import instance
+from catenary_fe.system.arguments import checked
 from catenary_fe.system.catenary_rules import check_lengths
 
 
+@checked
 def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     """The static shape of a line; where its droppers have no lengths, with those that its design takes.
 
@@ -30,14 +30,13 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     which a dropper or a steady arm would have to push or has no room; SolverError where no equilibrium is
     found or the heights of a design are off by more than 0.1 mm.
     """
-    check_catenary(catenary)
-    _check_mesh(mesh)
     check_lengths(catenary)
     if catenary.gives_dropper_lengths:
         return form.find_heights(catenary, None, mesh)
     return form.find_form(catenary, mesh)
 
 
+@checked
 def find_heights(
     catenary: Catenary,
     lengths: Sequence[float] | NDArray[np.float64] | None = None,
@@ -52,12 +51,5 @@ def find_heights(
 
     Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
     """
-    check_catenary(catenary)
-    _check_mesh(mesh)
     shape = form.find_heights(catenary, lengths, mesh)
     return replace(shape, catenary=catenary.with_dropper_lengths(shape.dropper_lengths))
-
-
-def _check_mesh(mesh: object) -> None:
-    if mesh is not None:
-        instance("mesh", mesh, MeshSettings, "give MeshSettings(contact_wire_element=…), or leave it out")

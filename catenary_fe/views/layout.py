@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity
 from catenary_fe.system import GRAVITY, Catenary
-from catenary_fe.system.arguments import span_numbers
+from catenary_fe.system.arguments import checked, span_numbers
 from catenary_fe.views.style import (
     CONTACT,
     DROPPER,
@@ -29,6 +29,7 @@ from catenary_fe.views.style import (
 Floats = NDArray[np.float64]
 
 
+@checked
 def plot_layout(
     catenary: Catenary,
     shape: Shape | None = None,
@@ -187,6 +188,7 @@ def _dimension(
         ax.text(*middle, text, va="center", ha="center", fontsize=8, backgroundcolor="white")
 
 
+@checked
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions.
 

@@ -9,11 +9,12 @@ from matplotlib.axes import Axes
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.system import Catenary
-from catenary_fe.system.arguments import span_numbers
+from catenary_fe.system.arguments import checked, number, span_numbers
 from catenary_fe.views.layout import hanging_lines
 from catenary_fe.views.style import DROPPER, SUPPORT, finish, headroom, mark_supports, new_axes
 
 
+@checked
 def plot_plan(
     shape: Shape, *, spans: Sequence[int] | None = None, head_width: float = 1.2, ax: Axes | None = None
 ) -> Axes:
@@ -22,6 +23,7 @@ def plot_plan(
     spans : numbers of the spans, from 1; unset: the evaluated ones, at most four
     head_width : [m] of the panhead's working part, drawn as a band
     """
+    number("head_width", head_width, "m", above=0.0)
     catenary = shape.catenary
     spans = span_numbers(spans, len(catenary.spans), catenary.spans_to_evaluate[:4])
     supports = catenary.support_positions

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results import Run
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import (
     DROPPER,
     PANTOGRAPHS,
@@ -18,6 +19,7 @@ from catenary_fe.views.style import (
 )
 
 
+@checked
 def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
@@ -61,6 +63,7 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@checked
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour."""
     ax = new_axes(ax)
@@ -81,6 +84,7 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     return note_failed(finish(ax, "time (s)", "uplift (mm)", title), run.failed_checks)
 
 
+@checked
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     """Static, largest and smallest force of each dropper; those that went slack are marked."""
     ax = new_axes(ax)
@@ -103,6 +107,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@checked
 def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
     """Work on the whole system, what its dampers took, what it has stored, and what is missing of that.
 
