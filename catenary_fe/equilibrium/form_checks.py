@@ -10,18 +10,11 @@ from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
 from catenary_fe.system.arguments import numbers
-from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
 
 STEEPEST = np.pi / 3  # [rad] a steady arm that stands up more has no hold on the wire
 _LEAST_PULL = 1.0  # [N] sideways
-
-
-def check_catenary(catenary: object) -> None:
-    """Raises InputError for what is not a catenary, such as the name of a file."""
-    if not isinstance(catenary, Catenary):
-        raise InputError(f"catenary = {shorten(catenary)}: must be a Catenary; load_catenary reads a file")
 
 
 def dropper_names(catenary: Catenary) -> list[str]:

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from catenary_fe.fe.contact import MovingContact
 from catenary_fe.fe.energy import EnergyLedger
 from catenary_fe.fe.faults import most_strained, place_of_heads
+from catenary_fe.fe.installation import Installation, dropper_damping
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
+from catenary_fe.fe.model import Model, build_model
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import release, solve_dynamic, solve_static
 from catenary_fe.fe.solver_settings import TimeSettings

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.model import Model, dropper_damping
+from catenary_fe.fe.installation import dropper_damping
+from catenary_fe.fe.model import Model
 
 Floats = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.cable import hermite
 from catenary_fe.fe.contact import locate
 from catenary_fe.fe.model import Model
 from catenary_fe.fe.pantograph import ContactItems, PantographItems
-from catenary_fe.fe.wire import hermite
 
 Floats = NDArray[np.float64]
 

@@ -20,17 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.dropper_matrices import dropper_motion, elongation, turning_stiffness
+from catenary_fe.fe.installation import Installation, dropper_damping, element_pulls, point_masses
 from catenary_fe.fe.linearise import first_coordinate, mass_blocks, stiffness_blocks
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.modal import link_stiffness, links, spring_values, transformation
-from catenary_fe.fe.model import (
-    Installation,
-    Model,
-    build_model,
-    dropper_damping,
-    element_pulls,
-    point_masses,
-)
+from catenary_fe.fe.model import Model, build_model
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.fe.wire import ALONG
 from catenary_fe.system import Catenary

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.dropper_matrices import taut_droppers
+from catenary_fe.fe.installation import Installation, point_masses
 from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Installation, Model, build_model, point_masses
+from catenary_fe.fe.model import Model, build_model
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import Catenary, InputError, SolverError
 

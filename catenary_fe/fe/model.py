@@ -11,39 +11,27 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import (
+    Installation,
+    curve_pulls,
+    dropper_damping,
+    point_masses,
+    wire_kinds,
+)
 from catenary_fe.fe.laws import dropper_function
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.overlay import Overlay, add_overlay
-from catenary_fe.fe.registration import Held, add_arms, add_supports
+from catenary_fe.fe.registration import add_arms, add_supports
 from catenary_fe.fe.solver import new_system
 from catenary_fe.fe.wire import (
-    ALONG,
     WireItems,
-    WireLine,
     add_ground_coordinate,
     add_wire,
     anchor_and_tension,
 )
-from catenary_fe.system import Catenary, Wire
+from catenary_fe.system import Catenary
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Installation:
-    """What the crew sets: how the wires hang, and the droppers, arms and supports that make them do so.
-
-    lines : the wires' static lines, in the order of the mesh
-    dropper_lengths : [m], shape (droppers,), stress-free
-    arm_forces : [N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires where they hang:
-        to the left (in space only) and up; 0 without an arm
-    support_forces : [N], shape (spans + 1, axes - 1), likewise, on the messenger wire
-    """
-
-    lines: tuple[WireLine, ...]
-    dropper_lengths: Floats
-    arm_forces: Floats
-    support_forces: Floats
 
 
 @dataclass(frozen=True)
@@ -56,7 +44,6 @@ class Model:
     droppers : numbers of the dropper connectors
     dropper_lengths : [m], stress-free
     ground : number of a coordinate marker that never moves
-    held : constraints that hold the wires, in a model of the installation
     """
 
     mbs: Any
@@ -67,7 +54,6 @@ class Model:
     droppers: list[int]
     dropper_lengths: Floats
     ground: int
-    held: Held
 
     @property
     def contact(self) -> WireItems:
@@ -107,10 +93,6 @@ class Model:
             for wire, a, b in zip(self.wires, ends[:-1], ends[1:], strict=True)
         ]
 
-    def held_force(self, constraint: int) -> float:
-        """[N] with which a constraint holds its wire at the current state."""
-        return float(self.mbs.GetObjectOutput(constraint, exu.OutputVariableType.Force))
-
     def dropper_forces(self) -> Floats:
         """[N], shape (droppers,), tension at the current state."""
         force = exu.OutputVariableType.Force
@@ -118,41 +100,8 @@ class Model:
         return np.array(axial)
 
 
-def dropper_damping(catenary: Catenary) -> Floats:
-    """[N s/m], shape (droppers,): a taut dropper's own damping and its share of the β K damping."""
-    return np.array([d.damping + catenary.damping.beta * d.stiffness for d in catenary.droppers])
-
-
-def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
-    """Each wire's parameters, in the order of the mesh."""
-    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires + [catenary.messenger_wire]
-    if catenary.stitch_wire:
-        lines += [catenary.stitch_wire] * len(mesh.stitch_ends)
-    return lines
-
-
-def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N], for each wire shape (elements,): nominal pull along the track.
-
-    Between a stitch wire's clamps the two wires share the messenger wire's tension.
-    """
-    pulls = [
-        np.full(wire.x.size - 1, kind.tension)
-        for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
-    ]
-    for a, b in mesh.stitch_ends:
-        assert catenary.stitch_wire is not None
-        pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
-    return pulls
-
-
-def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, held: bool = False) -> Model:
-    """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie.
-
-    held : instead of springs, constraints hold the messenger wire at its supports and the contact wire at
-        the arms that shall give it its design height: their forces are what an installation sets. Stitch
-        wires are pulled at one end, as by a winch.
-    """
+def build_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> Model:
+    """Build wires, droppers, supports and steady arms, in space or in the plane as the lines lie."""
     mbs = new_system()
     kinds = wire_kinds(catenary, mesh)
     wires = tuple(add_wire(mbs, kind, line) for kind, line in zip(kinds, installation.lines, strict=True))
@@ -160,13 +109,13 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation, *, h
     for wire, items in zip(kinds[: mesh.first_stitch], wires, strict=False):
         anchor_and_tension(mbs, items, ground, wire)
     overlay = add_overlay(mbs, wires, _overlay(catenary, mesh, installation, wires))
-    _clamp_stitch_wires(mbs, mesh, wires, held)
+    _clamp_stitch_wires(mbs, mesh, wires)
     droppers = _add_droppers(mbs, catenary, mesh, wires, installation.dropper_lengths)
     contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
-    arms = add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces, held)
-    supports = add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces, held)
+    add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces)
+    add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces)
     lengths = installation.dropper_lengths
-    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground, Held(arms, supports))
+    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground)
 
 
 def _overlay(
@@ -176,69 +125,20 @@ def _overlay(
     pull = None
     if wires[0].line.axes == 3 and any(span.curve_radius for span in catenary.spans):
         pull = np.concatenate(curve_pulls(catenary, mesh))
-    return Overlay(masses, hanging, catenary.damping, pull)
+    return Overlay(masses, hanging, catenary.damping, pull, installation.balance)
 
 
-def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ).
-
-    Seen from a track that curves with the radius R, a straight wire under the tension T bends as if a force
-    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
-    """
-    curvature = np.array([span.curvature for span in catenary.spans])
-    found = []
-    for wire, kind, pulls in zip(
-        mesh.wires, wire_kinds(catenary, mesh), element_pulls(catenary, mesh), strict=True
-    ):
-        middle = (wire.x[:-1] + wire.x[1:]) / 2
-        span = np.searchsorted(catenary.support_positions, middle) - 1
-        found.append(pulls * curvature[span] / kind.mass_per_length)
-    return found
-
-
-def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Floats, Floats]:
-    """[kg], shape (nodes of all wires,) each: masses that move with the nodes, and that weigh on them.
-
-    Of clamps, droppers and arms.
-    """
-    masses = np.zeros(mesh.first_nodes[-1])
-    half = np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
-    below = np.array([d.contact_wire_clamp_mass for d in catenary.droppers])
-    above = np.array([d.messenger_clamp_mass for d in catenary.droppers])
-    np.add.at(masses, mesh.nodes(mesh.lower), below + half)
-    np.add.at(masses, mesh.nodes(mesh.upper), above + half)
-    if catenary.stitch_wire:
-        ends = mesh.first_nodes[mesh.contact_wires] + mesh.stitch_ends
-        masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
-    hanging = masses.copy()
-    for i, support in list(enumerate(catenary.supports))[1:-1]:
-        if arm := support.steady_arm:
-            for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False):
-                masses[first + wire.supports[i]] += arm.tip_mass
-                hanging[first + wire.supports[i]] += arm.hanging_mass
-    return masses, hanging
-
-
-def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems], held: bool) -> None:
-    """Both ends move with the messenger wire.
-
-    held : the last end slides along the track under the wire's tension, by which its length is found; ends
-        that lie a little apart come together
-    """
+def _clamp_stitch_wires(mbs: exu.MainSystem, mesh: Mesh, wires: Sequence[WireItems]) -> None:
+    """Both ends move with the messenger wire."""
     messenger = wires[mesh.contact_wires]
     for stitch, ends in zip(wires[mesh.first_stitch :], mesh.stitch_ends, strict=True):
-        last = len(stitch.nodes) - 1
-        for node, clamp in zip((0, last), ends.tolist(), strict=True):
-            apart = messenger.line.points[clamp] - stitch.line.points[node] if held else np.zeros(3)
+        for node, clamp in zip((0, len(stitch.nodes) - 1), ends.tolist(), strict=True):
             for axis in range(stitch.line.axes):
-                above = messenger.coordinate_marker(mbs, clamp, axis)
-                below = stitch.coordinate_marker(mbs, node, axis)
-                if held and (node, axis) == (last, ALONG):
-                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=above, load=-stitch.kind.tension))
-                    mbs.AddLoad(eii.LoadCoordinate(markerNumber=below, load=stitch.kind.tension))
-                    continue
-                markers, offset = [above, below], float(apart[axis])
-                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset))
+                markers = [
+                    messenger.coordinate_marker(mbs, clamp, axis),
+                    stitch.coordinate_marker(mbs, node, axis),
+                ]
+                mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
 
 
 def _add_droppers(

@@ -15,15 +15,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.cable import Cables, tangent_blocks
 from catenary_fe.fe.contact import MovingContact
 from catenary_fe.fe.drive import raise_heads
 from catenary_fe.fe.dropper_matrices import taut_droppers
 from catenary_fe.fe.energy import constant_forces
+from catenary_fe.fe.installation import Installation, dropper_damping, point_masses
 from catenary_fe.fe.linear_model import HELD, ContactLine, contact_lines
-from catenary_fe.fe.linearise import Cables, mass_matrix, stiffness_matrix, tangent_blocks
+from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.modal import link_blocks, links, spring_values, transformation
-from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping, point_masses
+from catenary_fe.fe.model import Model, build_model
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
 from catenary_fe.fe.solver import release, solve_static
 from catenary_fe.system import AnyPantograph, Catenary

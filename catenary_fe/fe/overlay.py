@@ -27,12 +27,14 @@ class Overlay:
     damping : of the wires
     side_pull : [N/kg], shape (elements of all wires,), force to the left on each element by its mass: what
         a curve makes of the tension; unset: a straight track
+    balance : [N], shape (coordinates of all nodes,), further constant forces; unset: none
     """
 
     point_masses: Floats | None = None
     hanging_masses: Floats | None = None
     damping: RayleighDamping | None = None
     side_pull: Floats | None = None
+    balance: Floats | None = None
 
 
 def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overlay | None = None) -> int:
@@ -65,6 +67,8 @@ def add_overlay(mbs: exu.MainSystem, wires: Sequence[WireItems], overlay: Overla
         matrices["dampingMatrix"] = exu.MatrixContainer(D)
     if overlay.side_pull is not None and overlay.side_pull.any():
         forces = forces + mass_matrix(mbs, wires, factors=overlay.side_pull) @ directions[1]
+    if overlay.balance is not None:
+        forces = forces + overlay.balance
     nothing = exu.MatrixContainer(csr_matrix(([0.0], ([0], [0])), shape=M.shape))
     number = mbs.AddObject(
         eii.ObjectGenericODE2(

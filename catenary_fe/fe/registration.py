@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -11,25 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.system import LINK_STIFFNESS
 from catenary_fe.fe.wire import WireItems, hold
 from catenary_fe.system import Catenary, SteadyArm
 
 Floats = NDArray[np.float64]
-Constraints = dict[tuple[int, ...], int]
-
-LINK_STIFFNESS = 1e7  # [N/m] of a steady arm along its length: a tube's, far stiffer than the wire on it
-
-
-@dataclass(frozen=True)
-class Held:
-    """Constraints that hold the wires.
-
-    arms : by number of contact wire, support and axis, from 1: sideways (in space only), up
-    supports : by number of support and axis
-    """
-
-    arms: Constraints
-    supports: Constraints
 
 
 def add_arms(
@@ -39,15 +24,12 @@ def add_arms(
     wires: Sequence[WireItems],
     ground: int,
     forces: Floats,
-    held: bool,
-) -> Constraints:
+) -> None:
     """Steady arms on each contact wire; at the line's ends the wires are held where they are.
 
     forces : [N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires where they hang
-    held : see :func:`catenary_fe.fe.model.build_model`
     """
     last = len(catenary.supports) - 1
-    constraints: Constraints = {}
     for number, (wire, stations) in enumerate(zip(wires, mesh.wires, strict=False)):
         sideways, up = range(1, wire.up), wire.up
         for i, support in enumerate(catenary.supports):
@@ -55,15 +37,12 @@ def add_arms(
             held_axes: list[int] = []
             if i in (0, last):
                 held_axes = [*sideways, up]
-            elif arm and held:
-                held_axes = [*sideways, up] if arm.holds_height else [*sideways]
             elif arm and arm.length is None:
                 held_axes = [*sideways]
             for axis in held_axes:
-                constraints[number, i, axis] = hold(mbs, wire, node, axis, ground)
+                hold(mbs, wire, node, axis, ground)
             if arm and up not in held_axes:
-                _add_arm(mbs, wire, node, arm, ground, force, held)
-    return constraints
+                _add_arm(mbs, wire, node, arm, ground, force)
 
 
 def _add_arm(
@@ -73,13 +52,9 @@ def _add_arm(
     arm: SteadyArm,
     ground: int,
     force: Floats,
-    held: bool,
 ) -> None:
     if arm.stiffness is not None:
         _add_spring(mbs, wire, node, wire.up, ground, (arm.stiffness, arm.damping, force[-1]))
-    elif held:
-        marker = wire.coordinate_marker(mbs, node, wire.up)
-        mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=float(force[-1])))
     else:
         _add_link(mbs, wire, node, arm, force)
 
@@ -107,26 +82,23 @@ def add_supports(
     messenger: WireItems,
     ground: int,
     forces: Floats,
-    held: bool,
-) -> Constraints:
+) -> None:
     """Supports of the messenger wire.
 
     forces : [N], shape (spans + 1, axes - 1), on the wire where it hangs
     """
     last = len(catenary.supports) - 1
-    constraints: Constraints = {}
     for i, support in enumerate(catenary.supports):
         node = int(mesh.messenger.supports[i])
         springs = {messenger.up: (support.messenger_stiffness, support.messenger_damping)}
         if messenger.up > 1:
             springs[1] = (support.messenger_lateral_stiffness, support.messenger_lateral_damping)
         for axis, (stiffness, damping) in springs.items():
-            if held or i in (0, last) or stiffness is None:
-                constraints[i, axis] = hold(mbs, messenger, node, axis, ground)
+            if i in (0, last) or stiffness is None:
+                hold(mbs, messenger, node, axis, ground)
             else:
                 force = float(forces[i, axis - 1])
                 _add_spring(mbs, messenger, node, axis, ground, (stiffness, damping, force))
-    return constraints
 
 
 def _add_spring(

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import WireLine, wire_kinds
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import wire_kinds
-from catenary_fe.fe.wire import WireLine
 from catenary_fe.system import Catenary
 
 if TYPE_CHECKING:

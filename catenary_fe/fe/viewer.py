@@ -11,8 +11,9 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Installation, Model, build_model
+from catenary_fe.fe.model import Model, build_model
 from catenary_fe.system import Catenary, InputError
 
 _SIZE = 1280, 640  # [pixels]

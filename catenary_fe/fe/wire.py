@@ -11,76 +11,15 @@ from dataclasses import dataclass
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from catenary_fe.fe.faults import remember_wire
+from catenary_fe.fe.installation import WireLine
 from catenary_fe.system import Wire
 
 Floats = NDArray[np.float64]
 
 ALONG = 0
-_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(5)
-
-
-@dataclass(frozen=True)
-class WireLine:
-    """Where a wire hangs: positions and slopes at its nodes, arc lengths between them.
-
-    points : [m], shape (nodes, axes)
-    slopes : shape (nodes, axes), derivatives of the points along the wire
-    lengths : [m], shape (nodes - 1,), of the elements under the wire's nominal tension
-    """
-
-    points: Floats
-    slopes: Floats
-    lengths: Floats
-
-    @classmethod
-    def through(
-        cls, wire: Wire, points: ArrayLike, inclinations: ArrayLike, pulls: ArrayLike | None = None
-    ) -> WireLine:
-        """The wire that hangs through given points with given inclinations (cubic between the points).
-
-        points : [m], shape (nodes, axes)
-        inclinations : shape (nodes, axes - 1), derivatives along the track of all axes but the first
-        pulls : [N], shape (nodes - 1,), pull along the track in each element; unset: the nominal tension.
-            Where the wire is inclined it is stretched a little more than that.
-        """
-        points, rises = np.array(points, dtype=float), np.array(inclinations, dtype=float)
-        tension = np.full(len(points) - 1, wire.tension) if pulls is None else np.asarray(pulls, dtype=float)
-        h = np.diff(points[:, 0])[:, None, None]
-        xi = ((_GAUSS_X + 1) / 2)[:, None]
-        inclination = (
-            6 * (xi - xi**2) * np.diff(points[:, 1:], axis=0)[:, None] / h
-            + (1 - 4 * xi + 3 * xi**2) * rises[:-1, None]
-            + (3 * xi**2 - 2 * xi) * rises[1:, None]
-        )
-        arc = np.sqrt(1 + (inclination**2).sum(axis=2))
-        stretch = 1 + (arc * tension[:, None] - wire.tension) / wire.axial_stiffness
-        lengths = h[:, 0, 0] * ((arc / stretch) @ _GAUSS_W) / 2
-        at_nodes = np.concatenate([tension[:1], (tension[:-1] + tension[1:]) / 2, tension[-1:]])
-        arc = np.sqrt(1 + (rises**2).sum(axis=1))
-        slope = (1 + (arc * at_nodes - wire.tension) / wire.axial_stiffness) / arc
-        return cls(points, np.column_stack([slope, rises * slope[:, None]]), lengths)
-
-    @property
-    def axes(self) -> int:
-        """2 in the plane, 3 in space."""
-        return int(self.points.shape[1])
-
-    @property
-    def x(self) -> Floats:
-        """[m], shape (nodes,), along the track."""
-        return self.points[:, 0]
-
-    @property
-    def z(self) -> Floats:
-        """[m], shape (nodes,), up."""
-        return self.points[:, -1]
-
-    def coordinates(self) -> Floats:
-        """Shape (nodes, 2 * axes): reference coordinates of the nodes, points then slopes."""
-        return np.hstack([self.points, self.slopes])
 
 
 @dataclass(frozen=True)
@@ -145,29 +84,13 @@ def anchor_and_tension(mbs: exu.MainSystem, items: WireItems, ground: int, wire:
     mbs.AddLoad(eii.LoadCoordinate(markerNumber=end, load=wire.tension))
 
 
-def hold(
-    mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int, offset: float = 0.0
-) -> int:
-    """Hold a coordinate ``offset`` from where the line has it; returns the number of the constraint."""
+def hold(mbs: exu.MainSystem, items: WireItems, node: int, axis: int, ground: int) -> None:
+    """Hold a coordinate where the line has it."""
     markers = [ground, items.coordinate_marker(mbs, node, axis)]
-    return int(mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers, offset=offset)))
+    mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
 
 
 def add_ground_coordinate(mbs: exu.MainSystem) -> int:
     """A coordinate marker that never moves."""
     node = mbs.AddNode(eii.NodePointGround())
     return int(mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)))
-
-
-def hermite(xi: ArrayLike, length: ArrayLike) -> Floats:
-    """Shape functions of the cable element, shape (..., 4), at the fraction ``xi`` of its length."""
-    xi, length = np.asarray(xi, dtype=float), np.asarray(length, dtype=float)
-    return np.stack(
-        [
-            1 - 3 * xi**2 + 2 * xi**3,
-            length * (xi - 2 * xi**2 + xi**3),
-            3 * xi**2 - 2 * xi**3,
-            length * (xi**3 - xi**2),
-        ],
-        axis=-1,
-    )

@@ -10,16 +10,16 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.cable import hermite
+from catenary_fe.fe.installation import WireLine
 from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
 from catenary_fe.fe.solver import new_system, solve_static
 from catenary_fe.fe.wire import (
     ALONG,
     WireItems,
-    WireLine,
     add_ground_coordinate,
     add_wire,
     anchor_and_tension,
-    hermite,
     hold,
 )
 from catenary_fe.fe.wire_problem import Function, WireProblem

@@ -236,14 +236,6 @@ def test_arms_carry_what_they_say(reference_layout):
     assert up == pytest.approx(abs(left) * np.tan(0.15), rel=1e-6)
 
 
-def test_a_form_that_is_not_met_is_refused(reference_layout, monkeypatch):
-    from catenary_fe.equilibrium import form
-
-    monkeypatch.setattr(form, "_SETTLED", 10.0)  # ends after the first pass
-    with pytest.raises(cf.SolverError, match=r"span \d: dropper \d at .* misses its design height by"):
-        cf.find_form(cut(cf.load_catenary(reference_layout.parent / "en50318_2018_ac_stitched.toml")))
-
-
 def test_a_line_without_droppers_sags_by_itself(reference):
     line = cut(reference)
     line = line.replace(spans=tuple(s.replace(droppers=()) for s in line.spans))

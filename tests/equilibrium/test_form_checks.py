@@ -53,7 +53,7 @@ def test_droppers_may_stretch_but_not_from_nothing(reference):
         check_stretch(reference, distances, tensions)
     assert caught.value.problems == (
         "span 2: dropper 2 at 10.5 m: stiffness = 100000 N/m is too small: its tension of 100100 N would"
-        " stretch it by 1 m, and it spans 1 m; raise it; look at the unit",
+        " stretch it by 1 m, and it spans 1 m; raise it, look at its unit",
     )
 
 

@@ -50,7 +50,7 @@ class EnergyRecord:
         self._values.append(total)
 
     def _of_wires(self, q: Floats, v: Floats) -> float:
-        from catenary_fe.fe.linearise import strain_energy
+        from catenary_fe.fe.cable import strain_energy
 
         model, axes = self._model, np.arange(self._model.axes)
         total = model.reference + np.where(model.place >= 0, q[model.place], 0.0)

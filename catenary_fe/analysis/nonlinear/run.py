@@ -195,7 +195,7 @@ class NonlinearCatenary:
         return Start(free, chains, _tensions(model, begin.wires), speed)
 
     def _height(self, begin: ContactStart, wire: int, position: float) -> float:
-        from catenary_fe.fe.wire import hermite
+        from catenary_fe.fe.cable import hermite
 
         line = self._model.contacts[wire]
         axes, up = self._model.axes, self._model.axes - 1

@@ -1,0 +1,407 @@
+"""The assembled line: wires, droppers, arms and supports as arrays and sparse matrices, for every engine.
+
+    M q̈ + D q̇ + f_cables(q) + f_droppers(q, q̇) + f_links(q) + K_ground q = f
+
+q are displacements from the lines on which the wires were installed. "All" coordinates are those of the
+wires' nodes, of each its point and then its slope; "free" ones are those that move: what is held is left out,
+and the ends of stitch wires share the messenger wire's coordinates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.cable import Cables, inner_forces, mass_blocks, strain_energy, tangent_blocks
+from catenary_fe.fe.installation import (
+    Installation,
+    curve_pulls,
+    dropper_damping,
+    point_masses,
+    wire_kinds,
+)
+from catenary_fe.fe.mesh import Mesh
+from catenary_fe.system import GRAVITY, Catenary
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+FIXED = -1  # number of a coordinate that cannot move
+LINK_STIFFNESS = 1e7  # [N/m] of a steady arm along its length: a tube's, far stiffer than the wire on it
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Springs between points: droppers, which only pull, and steady arms that are bars on a fixed pivot.
+
+    first : shape (springs,), number of the first coordinate of the point at the lower end
+    last : shape (springs,), likewise of the other end; FIXED where that is a pivot
+    pivot : [m], shape (springs, axes), of bars: the fixed end
+    length : [m], shape (springs,), without force
+    stiffness, damping : [N/m], [N s/m], shape (springs,)
+    pulls_only : whether they go slack instead of pushing
+    """
+
+    first: Integers
+    last: Integers
+    pivot: Floats
+    length: Floats
+    stiffness: Floats
+    damping: Floats
+    pulls_only: bool
+
+    def only(self, kept: NDArray[np.bool_]) -> Springs:
+        """Some of them, shape (springs,)."""
+        arrays = {name: value[kept] for name, value in vars(self).items() if name != "pulls_only"}
+        return replace(self, **arrays)
+
+    def index(self) -> Integers:
+        """Shape (springs, axes or 2 * axes): coordinates of the lower, then of the upper end."""
+        axes = np.arange(self.pivot.shape[1])
+        lower = self.first[:, None] + axes
+        return np.hstack([lower, self.last[:, None] + axes]) if self.pulls_only else lower
+
+    def span(self, total: Floats) -> Floats:
+        """[m], shape (..., springs, axes), from the lower to the upper end; total : shape (..., all)."""
+        axes = np.arange(self.pivot.shape[1])
+        upper = total[..., self.last[:, None] + axes] if self.pulls_only else self.pivot
+        span: Floats = upper - total[..., self.first[:, None] + axes]
+        return span
+
+    def tension(self, span: Floats) -> Floats:
+        """[N], shape (..., springs)."""
+        tension: Floats = self.stiffness * (np.linalg.norm(span, axis=-1) - self.length)
+        return np.maximum(tension, 0.0) if self.pulls_only else tension
+
+    def forces(self, total: Floats) -> Floats:
+        """[N], shape (..., *index): on the points."""
+        span = self.span(total)
+        pull: Floats = (self.tension(span) / np.linalg.norm(span, axis=-1))[..., None] * span
+        return np.concatenate([pull, -pull], axis=-1) if self.pulls_only else pull
+
+    def blocks(self, total: Floats, *, taut: bool) -> Floats:
+        """Stiffness [N/m], shape (springs, m, m), over :meth:`index`.
+
+        taut : slack droppers count as just taut, not as gone
+        """
+        block = self.span_blocks(self.span(total), taut=taut)
+        return np.block([[block, -block], [-block, block]]) if self.pulls_only else block
+
+    def span_blocks(self, span: Floats, *, taut: bool = False) -> Floats:
+        """Stiffness [N/m], shape (springs, axes, axes), against a change of the span [m]."""
+        stiffness = self.stiffness
+        if self.pulls_only and not taut:
+            stiffness = np.where(np.linalg.norm(span, axis=1) > self.length, stiffness, 0.0)
+        return spring_blocks(span, self.tension(span), stiffness)
+
+    def energy(self, total: Floats) -> float:
+        """[J]"""
+        return float((self.tension(self.span(total)) ** 2 / (2 * self.stiffness)).sum())
+
+
+def spring_blocks(span: Floats, tension: Floats, stiffness: Floats) -> Floats:
+    """Stiffness [N/m] of springs at one end, shape (..., springs, axes, axes).
+
+    span : [m], shape (..., springs, axes), from end to end
+    tension, stiffness : [N], [N/m], shape (..., springs) or (springs,)
+    """
+    now = np.linalg.norm(span, axis=-1)
+    direction = span / now[..., None]
+    axial = direction[..., :, None] * direction[..., None, :]
+    across = (tension / now)[..., None, None] * (np.eye(span.shape[-1]) - axial)
+    blocks: Floats = stiffness[..., None, None] * axial + across
+    return blocks
+
+
+@dataclass(frozen=True)
+class System:
+    """The assembled line.
+
+    axes : 2 in the plane, 3 in space; up is the last one
+    reference : shape (all,), points [m] and slopes from which displacements count
+    place : shape (all,), number of the free coordinate, or FIXED; numbered in the order of their stations
+    first : shape (elements,), number of each cable element's first coordinate among all; those of its two
+        nodes follow one another
+    cables : the elements
+    wire_mass, mass : sparse, [kg], over all coordinates: of the wires, and with what they carry
+    droppers, arms : springs
+    ground_stiffness, ground_damping : [N/m], [N s/m], shape (all,), of springs to the ground
+    force : [N], shape (all,), constant: weight, tensions, curves, preloads, balance
+    alpha, beta : Rayleigh damping of the wires
+    """
+
+    axes: int
+    reference: Floats
+    place: Integers
+    first: Integers
+    cables: Cables
+    wire_mass: Any
+    mass: Any
+    droppers: Springs
+    arms: Springs
+    ground_stiffness: Floats
+    ground_damping: Floats
+    force: Floats
+    alpha: float
+    beta: float
+
+    @property
+    def size(self) -> int:
+        """Number of free coordinates."""
+        return int(self.place.max(initial=FIXED)) + 1
+
+    @property
+    def in_space(self) -> bool:
+        """Whether it has coordinates to the side."""
+        return self.axes == 3
+
+    def spread(self, free: Floats) -> Floats:
+        """From values of the free coordinates, shape (..., free), to all, 0 where they cannot move."""
+        spread: Floats = np.where(self.place >= 0, free[..., self.place], 0.0)
+        return spread
+
+    def gather(self, values: Floats) -> Floats:
+        """From forces on all coordinates, shape (..., all), to the free ones."""
+        gathered: Floats = (self.transformation.T @ values.T).T
+        return gathered
+
+    @cached_property
+    def transformation(self) -> Any:
+        """Sparse, shape (all, free): T with q = T x."""
+        from scipy.sparse import csr_matrix
+
+        moves = np.flatnonzero(self.place >= 0)
+        entries = np.ones(moves.size), (moves, self.place[moves])
+        return csr_matrix(entries, shape=(self.place.size, self.size))
+
+    def out_of_balance(self, moved: Floats) -> Floats:
+        """[N], shape (all,): constant forces less what the line answers to displacements ``moved``."""
+        total = self.reference + moved
+        index = self._elements()
+        residual = self.force - self.ground_stiffness * moved
+        values = inner_forces(self.cables, total[index].reshape(-1, 4, self.axes))
+        residual -= np.bincount(index.ravel(), values.ravel(), minlength=residual.size)
+        for springs in (self.droppers, self.arms):
+            at = springs.index()
+            residual += np.bincount(at.ravel(), springs.forces(total).ravel(), minlength=residual.size)
+        return residual
+
+    def tangent(self, moved: Floats, *, taut: bool = True) -> Any:
+        """Stiffness over the free coordinates, sparse.
+
+        moved : shape (all,), displacements
+        taut : all droppers count as taut, else slack ones are left out
+        """
+        total, index = self.reference + moved, self._elements()
+        parts = [(index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes)))]
+        for springs in (self.droppers, self.arms):
+            parts.append((springs.index(), springs.blocks(total, taut=taut)))
+        diagonal = np.arange(self.place.size)[:, None]
+        parts.append((diagonal, self.ground_stiffness[:, None, None]))
+        return self._assembled(parts)
+
+    def energy(self, moved: Floats) -> float:
+        """[J] stored in wires and springs, with the potential of the constant forces."""
+        total = self.reference + moved
+        stored = strain_energy(self.cables, total[self._elements()].reshape(-1, 4, self.axes)).sum()
+        stored += self.droppers.energy(total) + self.arms.energy(total)
+        return float(stored + (self.ground_stiffness * moved**2).sum() / 2 - self.force @ moved)
+
+    def _elements(self) -> Integers:
+        return self.first[:, None] + np.arange(4 * self.axes)
+
+    def _assembled(self, parts: list[tuple[Integers, Floats]]) -> Any:
+        """Sparse over the free coordinates, of blocks at coordinates among all."""
+        from scipy.sparse import coo_matrix
+
+        rows = np.concatenate([np.repeat(i, i.shape[1], axis=1).ravel() for i, _ in parts])
+        columns = np.concatenate([np.tile(i, (1, i.shape[1])).ravel() for i, _ in parts])
+        values = np.concatenate([block.ravel() for _, block in parts])
+        rows, columns = self.place[rows], self.place[columns]
+        moves = (rows >= 0) & (columns >= 0)
+        shape = (self.size, self.size)
+        return coo_matrix((values[moves], (rows[moves], columns[moves])), shape=shape).tocsr()
+
+
+def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> System:
+    """The line as it was installed, as one system."""
+    from scipy.sparse import coo_matrix, diags
+
+    lines, axes = installation.lines, installation.axes
+    width, first_nodes = 2 * axes, mesh.first_nodes
+    size = width * int(first_nodes[-1])
+    first = np.concatenate(
+        [width * (n + np.arange(line.lengths.size)) for n, line in zip(first_nodes, lines, strict=False)]
+    )
+    kinds = wire_kinds(catenary, mesh)
+    counts = [line.lengths.size for line in lines]
+    lengths = np.concatenate([line.lengths for line in lines])
+    per_length = np.repeat([float(kind.mass_per_length) for kind in kinds], counts)
+    index = first[:, None] + np.arange(2 * width)
+    blocks = mass_blocks(lengths, per_length, axes)
+    rows, columns = np.repeat(index, 2 * width, axis=1).ravel(), np.tile(index, (1, 2 * width)).ravel()
+
+    def assembled(factors: Floats | None = None) -> Any:
+        values = blocks if factors is None else blocks * factors[:, None, None]
+        return coo_matrix((values.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+
+    wire_mass = assembled()
+    masses, hanging = point_masses(catenary, mesh, installation.dropper_lengths)
+    ups, points = np.zeros((size // width, width)), np.zeros((size // width, width))
+    ups[:, axes - 1], points[:, :axes] = 1.0, 1.0
+    force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
+    if axes == 3:
+        left = np.roll(ups, -1, axis=1).ravel()
+        force += assembled(np.concatenate(curve_pulls(catenary, mesh))) @ left
+    held = _Held(catenary, mesh, installation, size)
+    return System(
+        axes=axes,
+        reference=installation.coordinates(),
+        place=held.place(lines),
+        first=first,
+        cables=Cables(
+            length=lengths,
+            axial_stiffness=np.repeat([float(k.axial_stiffness) for k in kinds], counts),
+            bending_stiffness=np.repeat([float(k.bending_stiffness) for k in kinds], counts),
+            rest_strain=np.repeat([-k.tension / k.axial_stiffness for k in kinds], counts),
+        ),
+        wire_mass=wire_mass,
+        mass=(wire_mass + diags(np.repeat(masses, width) * points.ravel())).tocsr(),
+        droppers=_droppers(catenary, mesh, installation),
+        arms=held.bars(),
+        ground_stiffness=held.stiffness,
+        ground_damping=held.damping,
+        force=force + held.force + installation.balance,
+        alpha=float(catenary.damping.alpha),
+        beta=float(catenary.damping.beta),
+    )
+
+
+def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:
+    """The installation with the forces that keep its wires exactly where their lines are."""
+    none = np.zeros_like(installation.balance)
+    system = assemble(catenary, mesh, replace(installation, balance=none))
+    residual = system.gather(system.out_of_balance(none))
+    balance = none.copy()
+    moves = np.flatnonzero(system.place >= 0)
+    _, one_each = np.unique(system.place[moves], return_index=True)
+    at = moves[one_each]  # of coordinates that follow another one, the leading one
+    balance[at] = -residual[system.place[at]]
+    return replace(installation, balance=balance)
+
+
+class _Held:
+    """What holds the wires at masts and ends: springs and preloads, fixed coordinates, bars."""
+
+    def __init__(self, catenary: Catenary, mesh: Mesh, installation: Installation, size: int) -> None:
+        self.catenary, self.mesh, self.installation = catenary, mesh, installation
+        self.axes, self.width = installation.axes, 2 * installation.axes
+        self.stiffness, self.damping, self.force = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.leader = np.arange(size)
+        self.fixed = np.zeros(size, dtype=bool)
+        self._bars: list[tuple[int, Floats, float]] = []
+        self._ends()
+        self._stitch_wires()
+        for number in range(mesh.contact_wires):
+            self._arms(number)
+        self._supports()
+
+    def at(self, wire: int, node: int, axis: int) -> int:
+        """Number of a coordinate."""
+        return self.width * (int(self.mesh.first_nodes[wire]) + node) + axis
+
+    def _ends(self) -> None:
+        """Contact and messenger wires are fixed along the track at the first node, pulled at the last."""
+        for number, kind in enumerate(wire_kinds(self.catenary, self.mesh)[: self.mesh.first_stitch]):
+            self.fixed[self.at(number, 0, 0)] = True
+            self.force[self.at(number, self.mesh.wires[number].x.size - 1, 0)] += kind.tension
+
+    def _stitch_wires(self) -> None:
+        mesh = self.mesh
+        for i, clamps in enumerate(mesh.stitch_ends.tolist()):
+            number = mesh.first_stitch + i
+            for node, clamp in zip((0, mesh.wires[number].x.size - 1), clamps, strict=True):
+                for axis in range(self.axes):
+                    self.leader[self.at(number, node, axis)] = self.at(mesh.contact_wires, clamp, axis)
+
+    def _spring(self, at: int, stiffness: float, damping: float, preload: float) -> None:
+        self.stiffness[at] += stiffness
+        self.damping[at] += damping
+        self.force[at] += preload
+
+    def _arms(self, number: int) -> None:
+        """Steady arms; at the line's ends the wire is held where it is."""
+        last, up = len(self.catenary.supports) - 1, self.axes - 1
+        for i, support in enumerate(self.catenary.supports):
+            node, arm = int(self.mesh.wires[number].supports[i]), support.steady_arm
+            force = self.installation.arm_forces[number, i]
+            sideways = [self.at(number, node, axis) for axis in range(1, up)]
+            at_end = i in (0, last)
+            if at_end or (arm and arm.length is None):
+                self.fixed[sideways] = True
+            if at_end:
+                self.fixed[self.at(number, node, up)] = True
+            elif arm and arm.stiffness is not None:
+                self._spring(self.at(number, node, up), arm.stiffness, arm.damping, float(force[-1]))
+            elif arm and arm.length is not None:
+                self._bar(number, node, arm.length, force)
+
+    def _bar(self, number: int, node: int, length: float, force: Floats) -> None:
+        """A stiff spring to a pivot that lies where the force on the wire points to."""
+        pull = float(np.linalg.norm(force))
+        pivot = self.installation.lines[number].points[node] + length * np.array([0.0, *force]) / pull
+        self._bars.append((self.at(number, node, 0), pivot, length - pull / LINK_STIFFNESS))
+
+    def _supports(self) -> None:
+        last, up, wire = len(self.catenary.supports) - 1, self.axes - 1, self.mesh.contact_wires
+        for i, support in enumerate(self.catenary.supports):
+            node = int(self.mesh.messenger.supports[i])
+            springs = {up: (support.messenger_stiffness, support.messenger_damping)}
+            if up > 1:
+                springs[1] = (support.messenger_lateral_stiffness, support.messenger_lateral_damping)
+            for axis, (stiffness, damping) in springs.items():
+                at = self.at(wire, node, axis)
+                if i in (0, last) or stiffness is None:
+                    self.fixed[at] = True
+                else:
+                    self._spring(at, stiffness, damping, float(self.installation.support_forces[i, axis - 1]))
+
+    def bars(self) -> Springs:
+        """The steady arms that are bars."""
+        count = len(self._bars)
+        return Springs(
+            first=np.array([first for first, _, _ in self._bars], dtype=np.int64),
+            last=np.full(count, FIXED, dtype=np.int64),
+            pivot=np.array([pivot for _, pivot, _ in self._bars], dtype=float).reshape(count, self.axes),
+            length=np.array([length for _, _, length in self._bars], dtype=float),
+            stiffness=np.full(count, LINK_STIFFNESS),
+            damping=np.zeros(count),
+            pulls_only=False,
+        )
+
+    def place(self, lines: tuple[Any, ...]) -> Integers:
+        """Numbers of the free coordinates in the order of their stations, FIXED for those that are held."""
+        station = np.concatenate([np.repeat(line.x, self.width) for line in lines])
+        leads = (self.leader == np.arange(self.leader.size)) & ~self.fixed
+        free = np.flatnonzero(leads)
+        order = free[np.argsort(station[free], kind="stable")]
+        place = np.full(self.leader.size, FIXED, dtype=np.int64)
+        place[order] = np.arange(order.size)
+        return np.where(self.fixed, FIXED, place[self.leader])
+
+
+def _droppers(catenary: Catenary, mesh: Mesh, installation: Installation) -> Springs:
+    width, count = 2 * installation.axes, len(catenary.droppers)
+    return Springs(
+        first=width * mesh.nodes(mesh.lower).astype(np.int64),
+        last=width * mesh.nodes(mesh.upper).astype(np.int64),
+        pivot=np.zeros((count, installation.axes)),
+        length=np.asarray(installation.dropper_lengths, dtype=float),
+        stiffness=np.array([d.stiffness for d in catenary.droppers], dtype=float),
+        damping=np.asarray(dropper_damping(catenary), dtype=float),
+        pulls_only=True,
+    )
