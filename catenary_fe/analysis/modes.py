@@ -8,6 +8,7 @@ import numpy as np
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modes import Modes, WireShapes
+from catenary_fe.system import InputError
 from catenary_fe.system.arguments import checked, number, whole
 
 _HIGHEST = 1e4  # [Hz] no mesh of a line resolves more
@@ -33,6 +34,10 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
         number("modes: below", below, "Hz", above=0.0, most=_HIGHEST)
     system = linear_system(shape.catenary, shape.mesh, shape.installation)
     nodes = [wire.x.size for wire in shape.mesh.wires]
+    if count is not None and count >= system.size:
+        raise InputError(
+            f"modes: count = {count}: the mesh holds {system.size - 1}; ask for fewer, or refine it"
+        )
     wanted = count or (40 if below is None else _expected(shape, below))
     pairs = solve_eigen(system, nodes, wanted)
     while below is not None and count is None and pairs.frequencies[-1] <= below:

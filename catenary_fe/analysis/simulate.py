@@ -77,7 +77,7 @@ def simulate(
     speed : [m/s]
     positions : [m] along the line at the start, one a pantograph; unset (for one): near the first support
     time : settings of the time integration
-    store_wire : [s] between stored shapes of the whole wires; unset: none
+    store_wire : [s] between stored shapes of the whole wires, rounded to whole time steps; unset: none
     progress : called with the share done, 0 to 1
     method : "nonlinear" in compiled code; "exudyn" the same with Exudyn's own solver, many times slower, to
         compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about

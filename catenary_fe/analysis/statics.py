@@ -17,6 +17,7 @@ from catenary_fe.system.frozen import changed_by_copy
 from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
+MOST_FORCE = 1e4  # [N] more would lift the wire over its supports
 POINTS = 24  # of a span
 MOST_POINTS = 10_000
 
@@ -91,7 +92,7 @@ def elasticity(
     spans or points_per_span.
     """
     catenary = shape.catenary
-    number("elasticity: force", force, "N", above=0.0, remedy="100 to 200 N are usual")
+    number("elasticity: force", force, "N", above=0.0, most=MOST_FORCE, remedy="100 to 200 N are usual")
     if positions is None:
         count = POINTS if points_per_span is None else points_per_span
         whole("elasticity: points_per_span", count, least=2, most=MOST_POINTS)
