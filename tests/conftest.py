@@ -43,3 +43,21 @@ def short_shape(short: cf.Catenary) -> cf.Shape:
 @pytest.fixture(scope="session")
 def short_run(short_shape: cf.Shape, pantograph: cf.Pantograph) -> cf.Run:
     return cf.simulate(short_shape, [pantograph], speed=250 / 3.6, store_wire=0.02)
+
+
+@pytest.fixture(scope="session")
+def curved_shape(reference_layout: Path) -> cf.Shape:
+    """Six spans with stitch wires, the third to the fifth in a curve to the left."""
+    line = cf.load_catenary(reference_layout.with_name("re330.toml"))
+    spans = tuple(
+        span.replace(curve_radius=1500.0) if n in (3, 4, 5) else span
+        for n, span in enumerate(line.spans[:6], start=1)
+    )
+    return cf.find_form(line.replace(spans=spans, supports=line.supports[:7], evaluated_spans=(4, 6)))
+
+
+@pytest.fixture(scope="session")
+def twin_wires_shape(reference_layout: Path) -> cf.Shape:
+    """Three spans of a line with two contact wires and 45 droppers."""
+    line = cf.load_catenary(reference_layout.with_name("dc_3kv_twin.toml"))
+    return cf.find_form(line.replace(spans=line.spans[:3], supports=line.supports[:4], evaluated_spans=(2,)))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from catenary_fe.cli.folder import output_folder
+from catenary_fe.cli.schedules import print_schedules, write_schedules
 from catenary_fe.cli.terminal import (
+    drawn_spans_option,
     json_option,
     layout_argument,
     output_option,
@@ -29,16 +31,21 @@ from catenary_fe.system.catenary_rules import check_lengths
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.plausibility import layout_warnings
 
+if TYPE_CHECKING:
+    from catenary_fe.results import Elasticity
+
 
 @click.command(epilog="\b\nExample:\n  catenary-fe info models/layouts/en50318_2002.toml -o info")
 @layout_argument
+@drawn_spans_option
 @output_option
 @json_option
 @quiet_option
-def info(layout: str, output: str | None, as_json: bool, quiet: bool) -> None:
+def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool, quiet: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
     check_lengths(catenary)
+    _check_drawn(catenary, spans, output)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
     with output_folder(output) as folder:
@@ -46,13 +53,24 @@ def info(layout: str, output: str | None, as_json: bool, quiet: bool) -> None:
             from catenary_fe.views import plot_layout
 
             folder.json("info.json", facts | {"warnings": warnings})
-            folder.picture("layout.png", plot_layout(catenary))
+            folder.picture("layout.png", plot_layout(catenary, spans=spans))
     if as_json:
         print_json(facts | {"warnings": warnings})
     else:
         if not quiet:
             print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
         print_warnings(warnings)
+
+
+def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None) -> None:
+    """Before the work: whether there are these spans to draw, and somewhere to draw them."""
+    if spans is None:
+        return
+    if output is None:
+        raise click.UsageError("--spans chooses the spans that are drawn: give -o DIR, too")
+    from catenary_fe.views.stretch import stretch
+
+    stretch(catenary, spans)
 
 
 def layout_facts(catenary: Catenary) -> dict[str, Any]:
@@ -120,12 +138,19 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
     is_flag=True,
     help="Find the lengths of the design, whatever lengths the layout gives.",
 )
+@drawn_spans_option
 @planar_option
 @output_option
 @json_option
 @quiet_option
 def form(
-    layout: str, design_lengths: bool, planar: bool, output: str | None, as_json: bool, quiet: bool
+    layout: str,
+    design_lengths: bool,
+    spans: list[int] | None,
+    planar: bool,
+    output: str | None,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
 
@@ -137,13 +162,14 @@ def form(
     catenary = read_layout(layout, planar)
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
+    _check_drawn(catenary, spans, output)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
             shape = find_form(catenary)
-        rows = [row.as_dict() for row in shape.dropper_schedule()]
         result: dict[str, Any] = {
-            "droppers": rows,
             "dropper_lengths_given": catenary.gives_dropper_lengths,
+            "droppers": [row.as_dict() for row in shape.dropper_schedule()],
+            "supports": [row.as_dict() for row in shape.support_schedule()],
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
@@ -153,37 +179,15 @@ def form(
             from catenary_fe.views import plot_layout, plot_plan, plot_static_shape
 
             folder.json("form.json", result)
-            folder.table("dropper_schedule.csv", rows)
-            folder.picture("layout.png", plot_layout(catenary, shape))
-            folder.picture("static_shape.png", plot_static_shape(shape))
+            write_schedules(folder, shape)
+            folder.picture("layout.png", plot_layout(catenary, shape, spans=spans))
+            folder.picture("static_shape.png", plot_static_shape(shape, spans=spans))
             if catenary.is_spatial:
-                folder.picture("plan.png", plot_plan(shape))
+                folder.picture("plan.png", plot_plan(shape, spans=spans))
     if as_json:
         print_json(result)
     elif not quiet:
-        where = [key for key in ("hangs_on", "contact_wire") if key in rows[0]] if rows else []
-        columns = (
-            "span",
-            "position m",
-            *(key.replace("_", " ") for key in where),
-            "length m",
-            "installed m",
-            "force N",
-            "height error mm",
-        )
-        table = [
-            (
-                int(row["span"]),
-                row["position_m"],
-                *(row[key] for key in where),
-                f"{row['length_m']:.4f}",
-                f"{row['installed_length_m']:.4f}",
-                f"{row['force_N']:.1f}",
-                f"{row['contact_wire_height_error_mm']:+.3f}",
-            )
-            for row in rows
-        ]
-        print_table(f"{catenary.name}: dropper schedule", columns, table)
+        print_schedules(shape)
     say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])
@@ -231,7 +235,7 @@ def static(
             from catenary_fe.views import plot_elasticity, plot_static_shape
 
             folder.json("static.json", result)
-            folder.table("elasticity.csv", rows)
+            folder.table("elasticity.csv", elasticity_table(curve, catenary))
             folder.picture("elasticity.png", plot_elasticity(curve))
             folder.picture("static_shape.png", plot_static_shape(shape))
     if as_json:
@@ -247,3 +251,14 @@ def static(
     say_lengths(shape, quiet)
     if not as_json:
         print_warnings(result["warnings"])
+
+
+def elasticity_table(curve: Elasticity, catenary: Catenary) -> list[dict[str, Any]]:
+    """Rows of the elasticity, each with the span that it is in; a support belongs to the span before it."""
+    inside = np.searchsorted(catenary.support_positions, curve.position - 1e-6)
+    spans = np.clip(inside, 1, len(catenary.spans)).tolist()
+    columns = curve.position.tolist(), (1e3 * curve.uplift).tolist(), (1e3 * curve.values).tolist()
+    return [
+        {"span": span, "position_m": x, "uplift_mm": uplift, "elasticity_mm_per_N": value}
+        for span, x, uplift, value in zip(spans, *columns, strict=True)
+    ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import shutil
 import tempfile
@@ -11,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from catenary_fe.results.csv_files import write_csv
 from catenary_fe.results.files import ASIDE, cannot_be_written, locked, replace_all, written_aside
 from catenary_fe.system import InputError
 
@@ -46,12 +46,13 @@ class Folder:
         text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
         (self.path / name).write_text(text + "\n", encoding="utf-8")
 
-    def table(self, name: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Write rows as CSV; the first row names the columns."""
-        with (self.path / name).open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [])
-            writer.writeheader()
-            writer.writerows(rows)
+    def table(self, name: str, rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> None:
+        """Write rows as CSV, with the digits that the columns' units are worth.
+
+        columns : their names; unset: the first row's
+        """
+        columns = columns or list(rows[0] if rows else [])
+        write_csv(self.path / name, columns, ([row[column] for column in columns] for row in rows))
 
     def text(self, name: str, text: str) -> None:
         """Write a text file."""

@@ -15,6 +15,7 @@ from catenary_fe.cli.criteria import exit_code, judged, print_criteria
 from catenary_fe.cli.folder import Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.schedules import write_schedules
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -244,7 +245,7 @@ def forget_partial(folder: Folder) -> None:
 
 
 _OF_A_RUN = (  # of another one they would say what is not so
-    "criteria.png", "energy.png", "report.html",
+    "criteria.png", "energy.png", "plan.png", "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
 
@@ -254,16 +255,20 @@ def write_run(
 ) -> None:
     """Results, pictures and summary of a run; its criteria where it was judged."""
     from catenary_fe import views
+    from catenary_fe.views.plan import head_width
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
-    folder.table("dropper_schedule.csv", [row.as_dict() for row in shape.dropper_schedule()])
+    write_schedules(folder, shape)
     another = (folder.path.parent / "run.nc").is_file()
     folder.keep()  # the run is safe whatever happens to its pictures
     if another:
         folder.forget(*_OF_A_RUN)
     folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
     folder.picture("static_shape.png", views.plot_static_shape(shape))
+    if shape.catenary.is_spatial:
+        width = head_width(result.pantographs)
+        folder.picture("plan.png", views.plot_plan(shape, head_width=width))
     folder.picture("contact_force.png", views.plot_contact_force(result))
     folder.picture("support_uplift.png", views.plot_support_uplift(result))
     folder.picture("dropper_forces.png", views.plot_dropper_forces(result))

@@ -25,7 +25,7 @@ from catenary_fe.cli.terminal import (
     spans_option,
 )
 from catenary_fe.system import Catenary, InputError
-from catenary_fe.system.variation import PANTOGRAPH, Variable, varied_pantograph
+from catenary_fe.system.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
 
 if TYPE_CHECKING:
     from catenary_fe.analysis.sweep import BrokenCase, SweepCase
@@ -283,7 +283,9 @@ def _write(output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any
     columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
     with output_folder(output) as folder:
         assert folder is not None
-        folder.table("sweep.csv", [{key: row.get(key, "") for key in columns} for row in rows])
+        names = {key: f"{key} [{unit}]" if (unit := unit_of(key)) else key for key in columns}
+        table = [{name: row.get(key, "") for key, name in names.items()} for row in rows]
+        folder.table("sweep.csv", table)
         x, by = _axis(axes)
         good = [row for row in rows if not row["error"]]
         if good and x:

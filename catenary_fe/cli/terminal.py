@@ -43,6 +43,9 @@ spans_option = click.option(
 shown_spans_option = click.option(
     "--spans", callback=_span_numbers, help="Spans to show, e.g. 5,6; unset: around the evaluated ones."
 )
+drawn_spans_option = click.option(
+    "--spans", callback=_span_numbers, help="Spans to draw, e.g. 5,6; unset: the line, and two spans closer."
+)
 
 
 def read_layout(path: str, planar: bool) -> Catenary:

@@ -1,6 +1,7 @@
 """Form finding: dropper lengths and the static shape."""
 
 from catenary_fe.equilibrium.form import find_form, find_heights
-from catenary_fe.equilibrium.shape import DropperRow, Shape
+from catenary_fe.equilibrium.schedules import ArmRow, DropperRow, SupportRow
+from catenary_fe.equilibrium.shape import Shape
 
-__all__ = ["DropperRow", "Shape", "find_form", "find_heights"]
+__all__ = ["ArmRow", "DropperRow", "Shape", "SupportRow", "find_form", "find_heights"]

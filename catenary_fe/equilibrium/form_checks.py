@@ -38,9 +38,10 @@ def check_pulls(catenary: Catenary, pulls: Floats) -> None:
 
 def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
+    tension = catenary.messenger_wire.tension
     _report(
         f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
-        " system_height or the messenger wire's tension"
+        f" system_height or the messenger wire's tension of {tension:g} N"
         for name, height in zip(dropper_names(catenary), heights, strict=True)
         if height <= 0
     )

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium.taut_wires import TautWires
 from catenary_fe.fe.cable import Cables, inner_forces, tangent_blocks
 from catenary_fe.fe.installation import WireLine, curve_pulls, wire_kinds
-from catenary_fe.system import GRAVITY
+from catenary_fe.system import GRAVITY, SolverError
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _ITERATIONS = 40
 _FACTORS = 2  # iterations with a tangent of their own: after them it hardly changes
+_ENOUGH = 1e-6  # which the balance takes up: 17 N of EA ε
 _SETTLED = 1e-9  # change of slopes and, by their length, of lengths
 
 
@@ -64,13 +65,19 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
         moment = (wires.weight * lengths**2 / 12)[:, None] * pull
         moments = np.concatenate([moment - inner[:, 1], -moment - inner[:, 3]], axis=1)
         if iteration < _FACTORS:
-            factor = _factor(place, tangent_blocks(cables, values), axes, slopes.size)
+            factor = _factor(place, tangent_blocks(cables, values, definite=True), axes, slopes.size)
         out = np.bincount(place.ravel(), moments.ravel(), minlength=slopes.size)
         turn = cho_solve_banded((factor, False), out).reshape(slopes.shape)
         longer = (inner[:, 2, 0] - wires.tension) / EA
         slopes, lengths = slopes + turn, lengths * (1 + longer)
         if max(np.abs(turn).max(), np.abs(longer).max()) < _SETTLED:
-            break
+            return slopes, lengths
+    if not np.abs(longer).max() < _ENOUGH:
+        worst = int(np.nan_to_num(np.abs(longer), nan=np.inf).argmax())
+        raise SolverError(
+            f"form finding: the {wires.name_of(worst)} finds no balance at {wires.x[left[worst]]:.1f} m along"
+            " the line; look there for clamps that are very close, little tension and sharp kinks"
+        )
     return slopes, lengths
 
 

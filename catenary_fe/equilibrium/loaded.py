@@ -110,9 +110,8 @@ class LoadedLine:
         mesh = self.shape.mesh
         worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax()) // (2 * self.system.axes)
         wire = int(np.searchsorted(mesh.first_nodes, worst, side="right")) - 1
-        name = "contact wire" if wire < mesh.contact_wires else "messenger wire"
-        name = "stitch wire" if wire >= mesh.first_stitch else name
-        return f"on the {name} at {mesh.wires[wire].x[worst - mesh.first_nodes[wire]]:.1f} m along the line"
+        x = mesh.wires[wire].x[worst - mesh.first_nodes[wire]]
+        return f"on the {mesh.wire_name(wire)} at {x:.1f} m along the line"
 
     def lifts(self, positions: Floats, force: float, progress: Progress | None = None) -> Floats:
         """[m], shape (points,): lift of the contact wire at each place [m] under a force [N] there.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.equilibrium.schedules import DropperRow, SupportRow, dropper_rows, support_rows
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.system import Catenary
@@ -18,35 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
-
-
-@changed_by_copy
-@dataclass(frozen=True)
-class DropperRow:
-    """One line of the dropper schedule.
-
-    span : number of the span, from 1
-    position_m : from the span's first support
-    length_m : stress-free, from clamp to clamp: what to cut
-    installed_length_m : under its load
-    force_N : tension
-    contact_wire_height_error_mm : of the contact wire at this dropper, above its design height
-    hangs_on : "messenger wire" or "stitch wire", on a line that has both
-    contact_wire : number of the contact wire that it holds, of two: 1 is the right one
-    """
-
-    span: int
-    position_m: float
-    length_m: float
-    installed_length_m: float
-    force_N: float  # noqa: N815 the unit's own letter
-    contact_wire_height_error_mm: float
-    hangs_on: str | None = None
-    contact_wire: int | None = None
-
-    def as_dict(self) -> dict[str, float | str]:
-        """The row by column name; what the line leaves no choice in is left out."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
 
 
 @changed_by_copy
@@ -197,26 +169,12 @@ class Shape:
         return self.installation.support_forces[:, -1]
 
     def dropper_schedule(self) -> list[DropperRow]:
-        """The table that a crew needs, one row a dropper."""
-        return [
-            DropperRow(
-                span=int(self.catenary.dropper_spans[i]),
-                position_m=dropper.position,
-                length_m=float(self.dropper_lengths[i]),
-                installed_length_m=float(self.installed_lengths[i]),
-                force_N=float(self.dropper_forces[i]),
-                contact_wire_height_error_mm=1e3 * float(self.height_errors[i]),
-                hangs_on=self._hangs_on(i),
-                contact_wire=int(self.mesh.lower.wire[i]) + 1 if self.mesh.contact_wires > 1 else None,
-            )
-            for i, dropper in enumerate(self.catenary.droppers)
-        ]
+        """The table that a crew cuts and hangs the droppers by, one row a dropper."""
+        return dropper_rows(self)
 
-    def _hangs_on(self, dropper: int) -> str | None:
-        if not self.stitch_wires:
-            return None
-        on_stitch = self.mesh.upper.wire[dropper] >= self.mesh.first_stitch
-        return "stitch wire" if on_stitch else "messenger wire"
+    def support_schedule(self) -> list[SupportRow]:
+        """The table that a crew sets the supports by, one row a support: places, arms, forces, tensions."""
+        return support_rows(self)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the static shape, heights exaggerated. See :func:`catenary_fe.views.plot_static_shape`."""

@@ -106,6 +106,10 @@ class TautWires:
         """Shape (elements,): number of each element's wire."""
         return np.repeat(np.arange(len(self.mesh.wires)), [w.x.size - 1 for w in self.mesh.wires])
 
+    def name_of(self, element: int) -> str:
+        """The wire that an element belongs to, in words."""
+        return self.mesh.wire_name(int(self.wire_of[element]))
+
     @cached_property
     def left(self) -> Integers:
         """Shape (elements,): number of each element's first node; the second one follows it."""

@@ -54,16 +54,17 @@ def inner_forces(cables: Cables, values: Floats) -> Floats:
     return total
 
 
-def tangent_blocks(cables: Cables, values: Floats) -> Floats:
+def tangent_blocks(cables: Cables, values: Floats, *, definite: bool = False) -> Floats:
     """Tangent stiffness [N/m], shape (elements, 4 * axes, 4 * axes).
 
     values : shape (elements, 4, axes), position and slope of the first node, then of the second
+    definite : where an element is slack, it resists turning as if under half its tension without strain
     """
     count, _, axes = values.shape
     total = np.zeros((count, 4, axes, 4, axes))
     for xi, share in zip(*_AXIAL, strict=True):
         a, _ = _weights((xi + 1) / 2, cables.length)
-        total += share / 2 * _spread(a, _axial(cables, np.einsum("ei,eik->ek", a, values)), a)
+        total += share / 2 * _spread(a, _axial(cables, np.einsum("ei,eik->ek", a, values), definite), a)
     for xi, share in zip(*_BENDING, strict=True):
         a, b = _weights((xi + 1) / 2, cables.length)
         r, bend = (np.einsum("ei,eik->ek", w, values) for w in (a, b))
@@ -117,12 +118,15 @@ def _weights(xi: float, L: Floats) -> tuple[Floats, Floats]:
     return np.stack(first, axis=1), np.stack(second, axis=1)
 
 
-def _axial(cables: Cables, r: Floats) -> Floats:
+def _axial(cables: Cables, r: Floats, definite: bool) -> Floats:
     """Second derivative of ½ EA (ε - ε₀)² L by r'."""
     length = np.linalg.norm(r, axis=1)
     t = r / length[:, None]
     along = t[:, :, None] * t[:, None, :]
-    turning = (1 - (1 + cables.rest_strain) / length)[:, None, None] * (np.eye(r.shape[1]) - along)
+    tension = 1 - (1 + cables.rest_strain) / length
+    if definite:
+        tension = np.maximum(tension, -cables.rest_strain / 2)
+    turning = tension[:, None, None] * (np.eye(r.shape[1]) - along)
     found: Floats = (cables.axial_stiffness * cables.length)[:, None, None] * (along + turning)
     return found
 

@@ -120,6 +120,12 @@ class Mesh:
         """Shape (wires + 1,): number of each wire's first node among all nodes, and their count."""
         return np.cumsum([0, *(wire.x.size for wire in self.wires)])
 
+    def wire_name(self, number: int) -> str:
+        """A wire in words, by its number."""
+        if number < self.contact_wires:
+            return "contact wire"
+        return "messenger wire" if number == self.contact_wires else "stitch wire"
+
     def nodes(self, clamps: Clamps) -> Integers:
         """Shape (droppers,): numbers of clamped nodes among the nodes of all wires."""
         numbers: Integers = self.first_nodes[clamps.wire] + clamps.node

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.csv_files import OF_HISTORIES, write_csv
 from catenary_fe.results.files import cannot_be_written, written_aside
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
@@ -38,18 +38,25 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
             **{f"mass_{n + 1}_height_m": z for n, z in enumerate(masses) if np.isfinite(z).all()},
         }
     tables["support_uplift"] = {"time_s": run.time} | {
-        f"support_{i + 1}_at_{x:g}_m_uplift_m": values
+        f"support_{i}_at_{_metres(x)}_m_uplift_m": values
         for i, (x, values) in enumerate(
-            zip(data["support_position"].values, data["support_uplift"].values, strict=True)
+            zip(data["support_position"].values, data["support_uplift"].values, strict=True), start=1
         )
     }
+    spans = data["dropper_span"].values
+    first = np.searchsorted(spans, spans)  # number of the first dropper in each one's span
     tables["dropper_force"] = {"time_s": run.time} | {
-        f"dropper_{i + 1}_at_{x:g}_m_force_N": values
+        f"span_{spans[i]}_dropper_{i - first[i] + 1}_at_{_metres(x)}_m_force_N": values
         for i, (x, values) in enumerate(
             zip(data["dropper_position"].values, data["dropper_force"].values, strict=True)
         )
     }
     return tables
+
+
+def _metres(x: float) -> str:
+    """To the millimetre, without zeros at the end."""
+    return f"{round(float(x), 3) + 0.0:.10g}"
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> list[Path]:
@@ -64,11 +71,9 @@ def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> l
         folder.mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():
             path = folder / f"{name}.csv"
-            with written_aside(path) as aside, aside.open("w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                writer.writerow(table)
-                rows = np.column_stack(list(table.values()))[::every]
-                writer.writerows([f"{value:.9g}" for value in row] for row in rows)
+            with written_aside(path) as aside:
+                rows = np.column_stack(list(table.values()))[::every].tolist()
+                write_csv(aside, list(table), rows, OF_HISTORIES)
             written.append(path)
     except OSError as error:
         raise InputError(cannot_be_written(folder, error)) from None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import copy
 import difflib
+import re
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
@@ -107,3 +108,27 @@ def _numbers(holder: Any, step: str, place: str) -> list[int]:
             f"{place}: '{step}' is not a number from 1 to {len(holder)}, nor * for all of a list's members"
         )
     return [int(step) - 1]
+
+
+def unit_of(place: str) -> str:
+    """Unit of the value at a place, such as "N/m"; empty where it has none."""
+    model: type[BaseModel] | None = LayoutFile
+    if place.startswith(PANTOGRAPH):
+        model, place = Pantograph, place.removeprefix(PANTOGRAPH)
+    said = ""
+    for step in place.split("."):
+        if step == "*" or step.isdigit():
+            continue
+        field = model.model_fields.get(step) if model else None
+        if field is None:
+            return ""
+        said, model = field.description or "", _model_in(field.annotation)
+    found = re.match(r"\[([^\]]+)\]", said)
+    return found[1] if found else ""
+
+
+def _model_in(kind: Any) -> type[BaseModel] | None:
+    """The parameters inside a type such as ``tuple[Span, ...] | None``."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return kind
+    return next((model for each in get_args(kind) if (model := _model_in(each))), None)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.views.style import PANTOGRAPHS, finish, headroom, mark_supports, new_axes, note_failed
+from catenary_fe.views.style import distinct, finish, headroom, mark_supports, new_axes, note_failed
 
 Floats = NDArray[np.float64]
 
@@ -29,8 +29,8 @@ def plot_force_comparison(
     first_x, first = curves[0]
     for axes in (force, difference):
         mark_supports(axes, runs[0].data["support_position"].values, label=axes is force)
-    for i, ((x, values), label) in enumerate(zip(curves, labels, strict=True)):
-        colour = _colour(i)
+    colours = distinct(len(runs))
+    for i, ((x, values), label, colour) in enumerate(zip(curves, labels, colours, strict=True)):
         statistics = runs[i].contact_force_statistics(filter=filter)[0]
         name = f"{label}: mean {statistics.mean:.1f} N, σ {statistics.std:.1f} N"
         force.plot(x, values, color=colour, linewidth=1.1, label=name)
@@ -52,10 +52,10 @@ def plot_force_comparison(
 def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Axes | None = None) -> Axes:
     """Largest uplift at each support of each run."""
     ax = new_axes(ax)
-    for i, (run, label) in enumerate(zip(runs, labels, strict=True)):
+    for run, label, colour in zip(runs, labels, distinct(len(runs)), strict=True):
         x = run.data["support_position"].values[1:-1]
         uplift = 1e3 * run.data["support_uplift"].values[1:-1].max(axis=1)
-        ax.plot(x, uplift, "o-", color=_colour(i), linewidth=0.8, markersize=5, label=label)
+        ax.plot(x, uplift, "o-", color=colour, linewidth=0.8, markersize=5, label=label)
     ax.set_ylim(bottom=0)
     headroom(ax, 0.2)
     ax.legend(loc="upper left", fontsize=8, ncols=4, framealpha=0.9)
@@ -72,8 +72,3 @@ def note_all_failed(ax: Axes, runs: Sequence[Run], labels: Sequence[str]) -> Axe
 
 def _force(run: Run, filter: FilterKind) -> tuple[Floats, Floats]:
     return np.asarray(run.data["position"].values[0]), run.filtered_contact_force(filter)[0]
-
-
-def _colour(number: int) -> str:
-    colours = (*PANTOGRAPHS, "#b8860b", "#008b8b", "#555555")
-    return colours[number % len(colours)]

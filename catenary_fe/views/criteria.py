@@ -10,18 +10,27 @@ from catenary_fe.results import Criterion, labels
 from catenary_fe.views.style import finish, new_axes
 
 _COLOURS = {"passed": "#3a7d44", "missed": "#b3261e", "not judged": "#9a9a9a"}
+_LONGEST = 2.0  # times the limit: a longer bar would leave no room to compare the others
 
 
 def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None = None) -> Axes:
     """One bar for each criterion: 100 % is the limit, a longer bar misses it.
 
-    A limit of 0 and an unknown one have no bar: value, limit and verdict stand alone there.
+    A lower limit of a figure that is a mean less its scatter is used by the scatter. Where the share has no
+    end, or goes beyond twice the limit, the bar is hatched and ends there. A criterion without a known
+    limit has an empty bar.
     """
     ax = new_axes(ax, (11.0, 1.2 + 0.32 * len(rows)))
-    shares = [limit_used(row) or 0.0 for row in rows]
-    end = 100 * max([1.0, *shares])
+    shares = [limit_used(row, _mean(row, rows)) for row in rows]
+    end = 100 * max([1.0, *(min(share, _LONGEST) for share in shares if share is not None)])
     for i, (row, share) in enumerate(zip(rows, shares, strict=True)):
-        ax.barh(i, 100 * share, height=0.62, color=_COLOURS[row.verdict])
+        colour = _COLOURS[row.verdict]
+        if share is None:
+            ax.barh(i, 100, height=0.62, facecolor="none", edgecolor=colour, linestyle=":", linewidth=1.0)
+        else:
+            hatch = "//" if share > _LONGEST else None
+            width = 100 * min(share, _LONGEST)
+            ax.barh(i, width, height=0.62, color=colour, hatch=hatch, edgecolor="white" if hatch else colour)
         text = f"{row.value_text}, {row.limit_text}" if row.limit is not None else row.value_text
         marks = [row.verdict] + ["limit recalled"] * row.recalled
         colour = _COLOURS["missed"] if row.passed is False else "#222222"
@@ -37,8 +46,27 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     return ax
 
 
-def limit_used(row: Criterion) -> float | None:
-    """Value over limit, or limit over value where the limit is a lower one; None where that says nothing."""
-    if row.limit is None or row.limit <= 0 or row.value <= 0:
+def _mean(row: Criterion, rows: Sequence[Criterion]) -> float | None:
+    """The same pantograph's mean force, from which a figure of the force falls towards its lower limit."""
+    means = [r.value for r in rows if r.name == "mean force" and r.pantograph == row.pantograph]
+    return means[0] if means and row.relation == "above" else None
+
+
+def limit_used(row: Criterion, start: float | None = None) -> float | None:
+    """Share of the limit: 1 at the limit, more beyond it, infinite where nothing of it is left.
+
+    start : where a figure with a lower limit starts from; unset: the share is limit over value there
+
+    None where no limit is known.
+    """
+    if row.limit is None:
         return None
-    return row.value / row.limit if row.relation == "at most" else row.limit / row.value
+    if start is not None and start > row.limit:
+        return max(0.0, (start - row.value) / (start - row.limit))
+    if row.relation == "at most":
+        part, whole = row.value, row.limit
+    else:
+        part, whole = row.limit, row.value
+    if whole > 0:
+        return max(0.0, part / whole)
+    return float("inf") if row.passed is False else 0.0

@@ -19,20 +19,20 @@ from catenary_fe.system import InputError
 from catenary_fe.system.arguments import checked, number, span_numbers, whole
 from catenary_fe.views.scene import Scene, scene
 from catenary_fe.views.style import (
-    CONTACT,
     DROPPER,
-    MESSENGER,
     PANTOGRAPHS,
     SLACK,
     SUPPORT,
+    WIRES,
     finish,
     mark_supports,
     note_failed,
+    wire_colour,
 )
 
 Floats = NDArray[np.float64]
 _SIZE, _DPI = (10.0, 5.4), 96  # [in], dots per inch: even numbers of pixels, which MP4 needs
-_MASS_GAP = 0.3  # [m] drawn between the masses
+_BASE = 0.3  # [m] of room below the lowest and above the highest thing drawn
 
 
 @checked
@@ -110,27 +110,28 @@ class _View:
 
     def _draw(self, scene: Scene) -> dict[str, Any]:
         """Axes and everything that stands still; returns what moves."""
-        ax, low = self._wires, scene.nominal - _MASS_GAP * (1.5 + max(len(m) for m in scene.masses))
-        supports = scene.support_x
-        high = max(float(np.nanmax(wire.static)) for wire in scene.wires)
+        ax, supports = self._wires, scene.support_x
+        low, high = scene.extent(self.start, self.end, self.magnified)
+        low, high = low - _BASE, high + 0.12 * (high - low) + _BASE
         mark_supports(ax, supports, label=False)
         mark_supports(self._force, supports, label=False)
         ax.set_xlim(self.start, self.end)
-        ax.set_ylim(low, high + 0.35)
-        width, height = _SIZE[0] * 0.9 / (self.end - self.start), _SIZE[1] * 0.5 / (high + 0.35 - low)
+        ax.set_ylim(low, high)
+        width, height = _SIZE[0] * 0.9 / (self.end - self.start), _SIZE[1] * 0.5 / (high - low)
         note_failed(finish(ax, "", "height above rail (m)", self._title), self._run.failed_checks)
         note = f"heights about {height / width:.0f}, motion another {self.magnified:g} times exaggerated"
         ax.text(0.995, 1.02, note, transform=ax.transAxes, ha="right", fontsize=8, color=SUPPORT)
         self._draw_force()
         options: dict[str, Any] = {"animated": True}
-        wires = [
-            ax.plot([], [], color=CONTACT if w.touched else MESSENGER, linewidth=1.5, **options)[0]
-            for w in scene.wires
-        ]
+        colours = [wire_colour(wire.name) for wire in scene.wires]
+        wires = [ax.plot([], [], color=colour, linewidth=1.5, **options)[0] for colour in colours]
+        for kind in WIRES:
+            if wire_colour(kind) in colours:
+                ax.plot([], [], color=wire_colour(kind), linewidth=1.5, label=kind)
         taut = ax.plot([], [], color=DROPPER, linewidth=0.9, **options)[0]
         slack = ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", **options)[0]
         ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", label="slack dropper")
-        ax.legend(loc="upper left", fontsize=8, frameon=False)
+        ax.legend(loc="upper left", fontsize=8, frameon=False, ncols=4)
         clock = ax.text(0.995, 0.93, "", transform=ax.transAxes, ha="right", fontsize=9, **options)
         heads = [
             ax.plot([], [], color=PANTOGRAPHS[i % len(PANTOGRAPHS)], marker="s", markersize=7, **options)[0]
@@ -166,10 +167,8 @@ class _View:
         for i, (head, point) in enumerate(zip(moving["heads"], moving["points"], strict=True)):
             x = scene.pantograph_x[i, frame]
             top = float(np.interp(x, contact.x, heights[0])) - 0.06
-            masses = scene.nominal + self.magnified * scene.masses[i][:, frame]
-            below = [z - _MASS_GAP * n - 0.06 for n, z in enumerate(masses) if n]
-            low = scene.nominal - _MASS_GAP * (1.4 + len(masses))
-            head.set_data([x] * (len(below) + 2), [top, *below, low])
+            below = scene.mass_heights(i, self.magnified)[1:, frame] - 0.06
+            head.set_data([x] * (below.size + 2), [top, *below, self._wires.get_ylim()[0]])
             point.set_data([x], [scene.force[i, frame]])
         moving["clock"].set_text(f"t = {scene.time[frame]:.2f} s")
 

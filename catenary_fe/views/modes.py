@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
 from catenary_fe.system.arguments import checked
-from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, finish, mark_supports, new_axes
+from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, distinct, finish, mark_supports, new_axes
 
 
 @checked
@@ -58,8 +58,7 @@ def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
     kinds = [f"bays, shape {k.half_waves}" if k.kind == "bays" else k.kind for k in modes.kinds()]
     number = np.arange(1, len(modes) + 1)
     names = sorted(set(kinds), key=lambda name: (name in IN_WORDS, name.startswith("bays"), name))
-    colours = (MESSENGER, CONTACT, "#3a7d44", "#7b4fa3", "#b8860b", "#555555", "#008b8b")
-    for name, colour in zip(names, colours, strict=False):
+    for name, colour in zip(names, distinct(len(names)), strict=True):
         of_kind = np.array([k == name for k in kinds])
         label = f"{IN_WORDS.get(name, name)}: {of_kind.sum()}"
         ax.plot(modes.frequencies[of_kind], number[of_kind], ".", color=colour, markersize=5, label=label)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.results import Run, WireHistory
 
 Floats = NDArray[np.float64]
+MASS_GAP = 0.3  # [m] drawn between a pantograph's masses
 
 
 @dataclass(frozen=True)
@@ -24,9 +25,9 @@ class Scene:
     dropper_slack : shape (frames, droppers)
     support_x : [m], shape (supports,)
     pantograph_x : [m], shape (pantographs, frames)
-    masses : for each pantograph [m] shape (masses, frames), motion above the height in the first frame
+    rest : [m], shape (pantographs, frames), static height of the contact wire at each pantograph
+    masses : for each pantograph [m] shape (masses, frames), motion above ``rest`` since the run's start
     force : [N], shape (pantographs, frames), low-passed at 20 Hz
-    nominal : [m] nominal contact wire height
     """
 
     time: Floats
@@ -36,15 +37,34 @@ class Scene:
     dropper_slack: NDArray[np.bool_]
     support_x: Floats
     pantograph_x: Floats
+    rest: Floats
     masses: tuple[Floats, ...]
     force: Floats
-    nominal: float
 
     def heights(self, wire: int, frame: int, magnified: float = 1.0) -> Floats:
         """[m], shape (points,), of a wire, its motion magnified about the static shape."""
         history = self.wires[wire]
         heights: Floats = history.static + magnified * history.uplift[frame]
         return heights
+
+    def mass_heights(self, pantograph: int, magnified: float = 1.0) -> Floats:
+        """[m], shape (masses, frames), that masses are drawn at: below the wire at rest, motion magnified."""
+        motion = self.masses[pantograph]
+        below = MASS_GAP * np.arange(len(motion))[:, None]
+        heights: Floats = self.rest[pantograph] - below + magnified * motion
+        return heights
+
+    def extent(self, start: float, end: float, magnified: float = 1.0) -> tuple[float, float]:
+        """[m] lowest and highest of what is drawn between two positions [m] along the line, in all frames."""
+        heights = []
+        for wire in self.wires:
+            shown = (wire.x >= start) & (wire.x <= end)
+            heights.append((wire.static + magnified * wire.uplift)[:, shown].ravel())
+        for i, x in enumerate(self.pantograph_x):
+            seen = (x >= start) & (x <= end)
+            heights += [self.rest[i, seen], self.mass_heights(i, magnified)[:, seen].ravel()]
+        drawn = np.concatenate(heights)
+        return float(np.nanmin(drawn)), float(np.nanmax(drawn))
 
 
 def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> Scene:
@@ -58,7 +78,9 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
     data = run.data
     dropper_x = np.asarray(data["dropper_position"].values)
     hung = run.catenary.dropper_contact_wires
-    masses = data["mass_height"].values
+    positions, masses = np.asarray(data["position"].values), data["mass_height"].values
+    rest = np.interp(positions, wires[0].x, wires[0].static)
+    moved = (masses - masses[:, :, :1] - (rest - rest[:, :1])[:, None, :])[:, :, at]
     return Scene(
         time=wires[0].time[chosen],
         wires=tuple(
@@ -71,10 +93,10 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
         ).reshape(-1, 2),
         dropper_slack=np.asarray(data["dropper_force"].values[:, at] <= 0).T,
         support_x=np.asarray(data["support_position"].values),
-        pantograph_x=np.asarray(data["position"].values[:, at]),
-        masses=tuple(m[np.isfinite(m[:, 0])][:, at] - m[np.isfinite(m[:, 0])][:, :1] for m in masses),
+        pantograph_x=positions[:, at],
+        rest=rest[:, at],
+        masses=tuple(m[np.isfinite(m[:, 0])] for m in moved),
         force=run.filtered_contact_force()[:, at],
-        nominal=run.catenary.contact_wire_height,
     )
 
 

@@ -2,18 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 CONTACT = "#c44e1c"  # contact wire
 MESSENGER = "#1f5a85"  # messenger wire
 STITCH = "#3a7d44"  # stitch wire
+WIRES = {"contact wire": CONTACT, "messenger wire": MESSENGER, "stitch wire": STITCH}
 DROPPER = "#7a7a7a"
 SUPPORT = "#444444"
 SLACK = "#d62728"  # a dropper that has gone slack
+EVALUATED = "#f3efe2"  # behind the evaluated spans
+OTHERS = "#c9c9c9"  # what is not evaluated
 PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
+_MANY = (*PANTOGRAPHS, "#b8860b", "#2a8f8f", "#a33b5e", "#5a5a5a")
+
+
+def wire_colour(name: str) -> str:
+    """Colour of a wire by its name, such as "left contact wire"."""
+    return next((colour for kind, colour in WIRES.items() if kind in name), MESSENGER)
+
+
+def sequence(count: int) -> list[str]:
+    """So many colours in order, each its own, dark to bright."""
+    return [to_hex(colormaps["viridis"](0.9 * i / max(1, count - 1))) for i in range(count)]
+
+
+def distinct(count: int) -> list[str]:
+    """So many colours to tell curves apart, each its own."""
+    return list(_MANY[:count]) if count <= len(_MANY) else sequence(count)
 
 
 def new_axes(ax: Axes | None, size: tuple[float, float] = (10.0, 4.0)) -> Axes:
@@ -23,6 +46,16 @@ def new_axes(ax: Axes | None, size: tuple[float, float] = (10.0, 4.0)) -> Axes:
     figure = Figure(figsize=size, layout="constrained")
     axes: Axes = figure.subplots()
     return axes
+
+
+def new_panels(size: tuple[float, float], heights: Sequence[float]) -> list[Axes]:
+    """Axes below one another in a new figure.
+
+    size : [in] of the figure
+    heights : of the axes, relative to each other
+    """
+    figure = Figure(figsize=size, layout="constrained")
+    return list(figure.subplots(len(heights), 1, height_ratios=list(heights)))
 
 
 def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
@@ -57,3 +90,68 @@ def headroom(ax: Axes, share: float) -> None:
     """Leave room for the legend above the curves, as a share of their height."""
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + share * (high - low))
+
+
+def mark_spans(
+    ax: Axes, supports: ArrayLike, spans: Iterable[int], label: str | None = "evaluated spans"
+) -> None:
+    """A band behind some spans (numbers from 1); neighbours share one."""
+    places = np.asarray(supports, dtype=float)
+    for first, last in runs(spans):
+        ax.axvspan(places[first - 1], places[last], color=EVALUATED, linewidth=0, zorder=0, label=label)
+        label = None
+
+
+def runs(numbers: Iterable[int]) -> list[tuple[int, int]]:
+    """First and last of each run of consecutive numbers."""
+    found: list[tuple[int, int]] = []
+    for n in sorted(set(numbers)):
+        if found and n == found[-1][1] + 1:
+            found[-1] = (found[-1][0], n)
+        else:
+            found.append((n, n))
+    return found
+
+
+def rotation_that_fits(ax: Axes, x: ArrayLike, texts: Sequence[str], size: float) -> int | None:
+    """Degrees by which texts, centred at ``x``, stay clear of each other: 0, or 90, or None where none does.
+
+    The axes need their limits.
+    """
+    gaps = np.diff(np.asarray(x, dtype=float))
+    if not gaps.size:
+        return 0
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    low, high = ax.get_xlim()
+    grows = 1.1 if figure.get_layout_engine() else 1.0  # when the figure is laid out, at the least
+    room = grows * gaps / (high - low) * ax.get_window_extent().width / figure.dpi * 72  # [pt]
+    widths = np.array([0.65 * size * len(text) + 0.5 * size for text in texts])
+    if (room > (widths[:-1] + widths[1:]) / 2).all():
+        return 0
+    return 90 if (room > 1.3 * size).all() else None
+
+
+def label_row(
+    ax: Axes, x: ArrayLike, y: ArrayLike, texts: Sequence[str], *, size: float = 7, above: float = 0
+) -> bool:
+    """Write texts at points, upright where they would touch; returns whether there was room for them.
+
+    above : [pt] over the points; 0: centred on them
+    """
+    rotation = rotation_that_fits(ax, x, texts, size)
+    if rotation is None:
+        return False
+    places = np.broadcast_to(np.asarray(y, dtype=float), np.shape(x))
+    for place, height, text in zip(np.asarray(x, dtype=float), places, texts, strict=True):
+        ax.annotate(
+            text,
+            (place, height),
+            xytext=(0, above),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if above else "center",
+            rotation=rotation,
+            fontsize=size,
+        )
+    return True

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 
 from catenary_fe.system import target_mean_force
 from catenary_fe.system.current_collection import DEVIATION_SHARE
-from catenary_fe.views.style import finish, headroom, new_axes, note_failed
+from catenary_fe.system.variation import unit_of
+from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed
 
 Rows = Sequence[Mapping[str, Any]]
-_COLOURS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3", "#8a6d1f", "#2a8f8f", "#a33b5e", "#5a5a5a")
 _CRITERION: dict[str, Any] = {"color": "#222222", "linewidth": 1.1}
 
 
@@ -25,7 +25,7 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
     by : columns that tell the curves apart
     """
     ax = new_axes(ax, (10.0, 5.6))
-    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+    for colour, name, curve in _curves(rows, x, by):
         at = _column(curve, x)
         ax.plot(at, _column(curve, "mean_N"), "o-", color=colour, markersize=4, label=f"{name}mean")
         low, high = _column(curve, "statistical_min_N"), _column(curve, "statistical_max_N")
@@ -45,7 +45,7 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
 def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Standard deviation against ``x`` with the largest one that is allowed, a share of the mean force."""
     ax = new_axes(ax, (10.0, 4.6))
-    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+    for colour, name, curve in _curves(rows, x, by):
         at = _column(curve, x)
         ax.plot(at, _column(curve, "std_N"), "o-", color=colour, markersize=4, label=f"{name}σ")
         most = DEVIATION_SHARE * _column(curve, "mean_N")
@@ -64,15 +64,15 @@ def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes
 def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Largest uplift at a support of the evaluated spans against ``x``."""
     ax = new_axes(ax, (10.0, 4.2))
-    for colour, (name, curve) in zip(_colours(), _curves(rows, x, by), strict=False):
+    for colour, name, curve in _curves(rows, x, by):
         values = _column(curve, "max_support_uplift_mm")
         ax.plot(_column(curve, x), values, "o-", color=colour, markersize=4, label=f"{name}uplift")
     ax.set_ylim(bottom=0.0)
     return _finished(ax, rows, x, "largest uplift at a support (mm)", "Uplift")
 
 
-def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, list[Mapping[str, Any]]]]:
-    """Name and rows of each curve, in the order of ``x``."""
+def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, str, list[Mapping[str, Any]]]]:
+    """Colour, name and rows of each curve, in the order of ``x``."""
     several = any(row.get("number", 1) > 1 for row in rows)
     curves: dict[str, list[Mapping[str, Any]]] = {}
     for row in rows:
@@ -81,16 +81,25 @@ def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, list[Mappi
             parts.append(f"pantograph {row['number']}")
         name = ", ".join(parts)
         curves.setdefault(f"{name}: " if name else "", []).append(row)
-    return [(name, sorted(curve, key=lambda row: row[x])) for name, curve in curves.items()]
+    colours = distinct(len(curves))
+    return [
+        (colour, name, sorted(curve, key=lambda row: row[x]))
+        for colour, (name, curve) in zip(colours, curves.items(), strict=True)
+    ]
 
 
 def _named(key: str, value: Any) -> str:
     text = f"{value:g}" if isinstance(value, float) else str(value)
-    return text if key == "pantograph" else f"{_title(key)} {text}"
+    if key == "pantograph":
+        return text
+    name, _, unit = _title(key).partition(" (")
+    return f"{name} {text} {unit.removesuffix(')')}".rstrip()
 
 
 def _title(key: str) -> str:
-    return {"speed_kmh": "speed (km/h)"}.get(key, key.replace("_", " "))
+    unit = "km/h" if key == "speed_kmh" else unit_of(key)
+    name = "speed" if key == "speed_kmh" else key.replace("_", " ").replace(".", ", ")
+    return f"{name} ({unit})" if unit else name
 
 
 def _column(curve: Rows, key: str) -> Any:
@@ -100,10 +109,6 @@ def _column(curve: Rows, key: str) -> Any:
 def _ends(rows: Rows, x: str) -> tuple[float, float]:
     values = [row[x] for row in rows]
     return min(values), max(values)
-
-
-def _colours() -> list[str]:
-    return list(_COLOURS) * 100
 
 
 def _finished(ax: Axes, rows: Rows, x: str, y: str, what: str) -> Axes:

@@ -92,8 +92,8 @@ def test_the_command_runs_all_combinations(layout, tmp_path, capsys):
     assert main([*arguments, *vary]) == 0
     rows = table(out)
     assert len(rows) == 8
-    assert {(r["speed_kmh"], r["contact_wire.tension"]) for r in rows} == {
-        (v, t) for v in ("200.0", "220.0", "240.0", "260.0") for t in ("20000.0", "24000.0")
+    assert {(r["speed_kmh"], r["contact_wire.tension [N]"]) for r in rows} == {
+        (v, t) for v in ("200", "220", "240", "260") for t in ("20000", "24000")
     }
     assert all(not r["error"] and float(r["std_N"]) > 0 for r in rows)
     for name in ("contact_force", "standard_deviation", "support_uplift"):

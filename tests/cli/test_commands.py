@@ -41,13 +41,27 @@ def test_form(capsys, layout, tmp_path):
     rows = json.loads(out)["droppers"]
     assert (code, err, len(rows)) == (0, "", 36)
     assert set(rows[0]) == {
-        "span", "position_m", "length_m", "installed_length_m", "force_N", "contact_wire_height_error_mm",
+        "span", "from_support", "to_support", "dropper", "chainage_m", "position_m", "cut_length_mm",
+        "length_m", "installed_length_m", "force_N", "contact_wire_height_m", "contact_wire_height_error_mm",
     }  # fmt: skip
+    assert [row["support"] for row in json.loads(out)["supports"]] == [1, 2, 3, 4, 5]
     assert max(abs(row["contact_wire_height_error_mm"]) for row in rows) < 0.1
     table = (tmp_path / "out" / "dropper_schedule.csv").read_text().splitlines()
     assert len(table) == 37
+    cut = f"{rows[9]['cut_length_mm']},{rows[9]['length_m']:.4f},{rows[9]['installed_length_m']:.4f}"
+    assert table[10].startswith(f"2,2,3,1,65.000,5.000,{cut},{rows[9]['force_N']:.1f},5.300,")
+    assert table[10].endswith(",messenger wire,1")
     code, out, _ = call(capsys, "form", layout)
     assert "dropper schedule" in out
+    assert "supports" in out
+
+
+def test_the_spans_that_are_drawn(capsys, layout, tmp_path):
+    place = tmp_path / "out"
+    assert call(capsys, "info", layout, "--quiet", "-o", place)[0] == 0
+    whole = (place / "layout.png").read_bytes()
+    assert call(capsys, "info", layout, "--quiet", "--spans", "2,3", "-o", place)[0] == 0
+    assert (place / "layout.png").read_bytes() != whole
 
 
 def test_static(capsys, layout, tmp_path):
@@ -75,7 +89,8 @@ def test_run(capsys, layout, tmp_path):
     assert "criteria" not in summary
     assert summary["pantographs"][0]["name"] == "EN 50318:2002"
     assert {p.name for p in out_dir.iterdir()} == {
-        "run.nc", "summary.json", "dropper_schedule.csv", "layout.png", "static_shape.png",
+        "run.nc", "summary.json", "dropper_schedule.csv", "support_schedule.csv", "layout.png",
+        "static_shape.png",
         "contact_force.png", "support_uplift.png", "dropper_forces.png", "energy.png", "layout.toml",
         "inputs.json",
     }  # fmt: skip
@@ -155,6 +170,8 @@ def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
         (["static", "LAYOUT", "--force", "0"], 3, "force = 0 N: must be above 0"),
         (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
         (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
+        (["form", "LAYOUT", "--spans", "2"], 2, "--spans chooses the spans that are drawn: give -o DIR"),
+        (["info", "LAYOUT", "--spans", "4,5", "-o", "out"], 3, "the line has spans 1 to 4"),
         (["frobnicate"], 2, "No such command"),
         (["info"], 2, "Missing argument 'LAYOUT'"),
     ],

@@ -66,9 +66,9 @@ def test_whole_wires_are_stored_every_10_ms(folder):
     dropper = np.searchsorted(messenger.x, 90.0)
     assert np.ptp(messenger.height[:, dropper]) > 0.01
     with (folder / "dropper_schedule.csv").open() as file:
-        row = next(r for r in csv.DictReader(file) if r["span"] == "2" and r["position_m"] == "30.0")
+        row = next(r for r in csv.DictReader(file) if r["span"] == "2" and r["position_m"] == "30.000")
     gap = messenger.static[dropper] - contact.static[np.searchsorted(contact.x, 90.0)]
-    assert gap == pytest.approx(float(row["installed_length_m"]), abs=1e-6)
+    assert gap == pytest.approx(float(row["installed_length_m"]), abs=6e-5)
 
 
 def test_rerun_gives_the_same(capsys, folder, tmp_path):
@@ -102,12 +102,12 @@ def test_export(capsys, folder, tmp_path):
     with (tmp_path / "csv" / "pantograph_2.csv").open() as file:
         rows = list(csv.DictReader(file))
     force = [float(row["contact_force_N"]) for row in rows]
-    assert force == pytest.approx(run.data["contact_force"].values[1, ::10], rel=1e-8)
+    assert force == pytest.approx(run.data["contact_force"].values[1, ::10], abs=5.1e-3)
     assert "mass_2_height_m" in rows[0]
     with (tmp_path / "csv" / "pantograph_1.csv").open() as file:
         assert "mass_2_height_m" not in file.readline()
     with (tmp_path / "csv" / "dropper_force.csv").open() as file:
-        assert "dropper_27_at_175_m_force_N" in file.readline()
+        assert "span_3_dropper_9_at_175_m_force_N" in file.readline()
 
 
 def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(capsys, folder, tmp_path):
@@ -122,7 +122,8 @@ def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(ca
     assert call(capsys, "run", line, "--pantograph", "EN 50318:2002", *arguments, "-o", place)[0] == 0
     left = {str(file.relative_to(place)) for file in place.rglob("*") if file.is_file()}
     assert left == {
-        "run.nc", "summary.json", "layout.toml", "inputs.json", "dropper_schedule.csv", "layout.png",
+        "run.nc", "summary.json", "layout.toml", "inputs.json", "dropper_schedule.csv",
+        "support_schedule.csv", "layout.png",
         "static_shape.png", "contact_force.png", "support_uplift.png", "dropper_forces.png", "notes.txt",
         "pantograph_mine.toml", "pantograph_1.toml",  # an input, which inputs.json names no more
     }  # fmt: skip

@@ -128,7 +128,7 @@ def test_histories_as_tables():
         assert np.array_equal(table["contact_force_0_20_Hz_N"], run.filtered_contact_force("zero-phase")[i])
         assert np.array_equal(table["mass_1_height_m"], masses[i, 0])
     assert list(tables["support_uplift"])[-1] == "support_4_at_162.5_m_uplift_m"
-    assert list(tables["dropper_force"])[:2] == ["time_s", "dropper_1_at_10_m_force_N"]
+    assert list(tables["dropper_force"])[:2] == ["time_s", "span_1_dropper_1_at_10_m_force_N"]
     assert list(tables["support_uplift"])[0:2] == ["time_s", "support_1_at_0_m_uplift_m"]
 
 
@@ -138,7 +138,12 @@ def test_tables_are_written_at_every_so_many_times(tmp_path):
     paths = write_tables({"a": table, "b": table}, folder, every=3)
     assert paths == [folder / "a.csv", folder / "b.csv"]
     rows = list(csv.reader(paths[1].read_text(encoding="utf-8").splitlines()))
-    assert rows == [["time_s", "force_N"], ["0", "142.857143"], ["1", "142.857143"], ["2", "nan"]]
+    assert rows == [
+        ["time_s", "force_N"],
+        ["0.000000", "142.86"],
+        ["1.000000", "142.86"],
+        ["2.000000", "nan"],
+    ]
     assert len(write_tables({"a": table}, folder)[0].read_bytes().splitlines()) == 8
     assert len(write_tables({"a": table}, folder, every=1)) == 1  # what is there may be written over
 

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
+from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.run import write_run
 from catenary_fe.fe.drive import Trip, drive
 
 
@@ -85,3 +87,14 @@ def test_energy_of_an_undamped_run_in_space(staggered, chain):
     work = np.abs(driven).max() + np.abs(140 * (base - base[0])).max()
     assert work > 10
     assert np.abs(driven - gained).max() < 0.01 * work
+
+
+def test_a_run_in_space_has_a_plan_among_its_pictures(staggered_shape, pantograph, tmp_path, monkeypatch):
+    step = cf.TimeSettings(step=4e-3)
+    run = cf.simulate(staggered_shape, [pantograph], speed=70.0, method="linearised", time=step)
+    drawn = {}
+    monkeypatch.setattr(Folder, "picture", lambda self, name, ax: drawn.update({name: ax}))
+    with output_folder(str(tmp_path)) as folder:
+        write_run(folder, staggered_shape, run, run.summary())
+    assert "straight track" in drawn["plan.png"].get_title(loc="left")
+    assert (tmp_path / "support_schedule.csv").read_text().count("\n") == 6

@@ -45,6 +45,41 @@ def test_droppers_hang_on_the_lowest_wire_above(spatial):
         assert names[upper] == ("stitch wire" if on_stitch else "messenger wire")
 
 
+@pytest.fixture(scope="module")
+def falling(short_run):
+    """The short run on a line whose contact wire falls by 1.2 m, everything with it."""
+    data = short_run.data.copy()
+    for name in ("contact_wire", "messenger_wire"):
+        variable = f"{name}_height"
+        drop = -0.005 * data[data[variable].dims[1]]
+        data[variable] = data[variable] + drop
+        data = data.assign_coords({f"static_{variable}": data[f"static_{variable}"] + drop})
+    data["mass_height"] = data["mass_height"] - 0.005 * data["position"]
+    return cf.Run(data)
+
+
+@pytest.mark.parametrize("magnified", [1.0, 5.0])
+def test_all_that_moves_stays_in_the_picture(falling, magnified):
+    """The masses follow the wire that falls, their motion about it magnified as the wire's is."""
+    seen = scene(falling)
+    low, high = seen.extent(0.0, 240.0, magnified)
+    (x,), (rest,) = seen.pantograph_x, seen.rest
+    assert rest == pytest.approx(5.3 - 0.005 * x, abs=0.01)
+    heights = seen.mass_heights(0, magnified)
+    assert np.abs(heights[0] - rest).max() < 0.25 * magnified
+    drawn = [seen.heights(i, frame, magnified) for i in (0, 1) for frame in range(seen.time.size)]
+    assert low <= min(heights.min(), *(z.min() for z in drawn)) < 4.3
+    assert high >= max(z.max() for z in drawn)
+    here = seen.extent(0.0, 60.0, magnified)
+    assert low < here[0] - 0.3
+
+
+def test_each_kind_of_wire_has_its_colour(spatial):
+    wires = {wire["name"]: wire["colour"] for wire in motion(spatial)["wires"]}
+    assert wires["contact wire"] == wires["left contact wire"]
+    assert len({wires[name] for name in ("contact wire", "messenger wire", "stitch wire")}) == 3
+
+
 def test_the_player_gets_valid_json_and_the_same_shapes(spatial):
     data = json.loads(json.dumps(motion(spatial), allow_nan=False))
     stitch = data["wires"][3]

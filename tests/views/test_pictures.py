@@ -1,11 +1,15 @@
 """Pictures: drawn from data, labelled with units, without a screen."""
 
+import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import catenary_fe as cf
 from catenary_fe import views
+from catenary_fe.results import Criterion
+from catenary_fe.views.style import EVALUATED, WIRES, distinct, sequence
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +49,26 @@ def test_a_bar_beyond_100_percent_misses_its_criterion(short_run):
     for row, bar, text in zip(rows, ax.patches, ax.texts, strict=True):
         assert row.value_text in text.get_text()
         assert ("recalled" in text.get_text()) == row.recalled
-        if bar.get_width():
+        if row.passed is not None:
             assert row.passed == (bar.get_width() <= 100)
-    assert sum(bar.get_width() > 0 for bar in ax.patches) == 6
+            assert bar.get_width() > 0 or row.value == 0
+            assert bar.get_fill()
+        else:
+            assert not bar.get_facecolor()[3]
+
+
+def test_a_missed_lower_limit_of_zero_has_a_bar_beyond_100_percent():
+    """Mean 100 N, σ 35 N: 3 σ are 105 % of the mean; a share of nothing ends hatched."""
+    limit = {"limit": 0.0, "source": "test", "pantograph": "P"}
+    rows = [
+        Criterion(name="mean force", value=100.0, unit="N", **limit | {"limit": 120.0}),
+        Criterion(name="statistical minimum", value=-5.0, relation="above", unit="N", **limit),
+        Criterion(name="contact loss", value=0.05, unit="%", **limit),
+    ]
+    mean, minimum, loss = views.plot_criteria(rows).patches
+    assert mean.get_width() == pytest.approx(100 / 1.2)
+    assert minimum.get_width() == pytest.approx(105)
+    assert (loss.get_width(), bool(loss.get_hatch())) == (200, True)
 
 
 def test_a_given_axes_is_drawn_on(short_run):
@@ -97,3 +118,125 @@ def test_a_run_without_energy_has_no_picture_of_it(short_shape, pantograph):
     assert not run.has_energy
     with pytest.raises(cf.InputError, match="recorded no energy; run again with the method 'nonlinear'"):
         run.plot_energy()
+
+
+@pytest.fixture(scope="module")
+def whole_lines(curved_shape):
+    """Pictures of six spans, with two of them closer."""
+    return {
+        "layout": views.plot_layout(curved_shape.catenary, curved_shape),
+        "sketch": views.plot_layout(curved_shape.catenary),
+        "plan": views.plot_plan(curved_shape),
+        "static shape": views.plot_static_shape(curved_shape),
+    }
+
+
+def test_the_whole_line_is_drawn_with_a_detail(whole_lines):
+    for name, whole in whole_lines.items():
+        low, high = whole.get_xlim()
+        assert low <= 0, name
+        assert high >= 390, name
+        *_, close = whole.figure.axes
+        low, high = close.get_xlim()
+        assert 130 < high - low < 140, name
+        assert "drawn closer below" in whole.get_legend_handles_labels()[1]
+
+
+def test_evaluated_spans_are_marked(whole_lines):
+    """The fourth and the sixth, not what lies between them."""
+    for whole in whole_lines.values():
+        bands = [p for p in whole.patches if mpl.colors.to_hex(p.get_facecolor()) == EVALUATED]
+        assert [(b.get_x(), b.get_x() + b.get_width()) for b in bands] == [(195, 260), (325, 390)]
+
+
+def test_the_plan_contains_the_curve(whole_lines, curved_shape):
+    whole = whole_lines["plan"]
+    assert "curve to the left, radius 1500 m, in spans 3 to 5" in whole.get_title(loc="left")
+    bar = next(line for line in whole.lines if line.get_label() == "curve")
+    assert tuple(bar.get_xdata()) == (130, 325)
+    wire = next(line for line in whole.lines if line.get_label() == "contact wire")
+    middle = np.interp(227.5, *wire.get_data())
+    assert middle == pytest.approx(curved_shape.contact_wires[0].lateral(227.5), abs=1e-4)
+    assert middle > 0.3  # 65² / (8 · 1500) m
+    straight = views.plot_plan(curved_shape, spans=[1, 2]).get_title(loc="left")
+    assert "spans 1 and 2, straight track" in straight
+
+
+def test_each_kind_of_wire_has_a_colour_of_its_own(whole_lines):
+    for name in ("layout", "sketch", "plan"):
+        lines = {line.get_label(): line.get_color() for line in whole_lines[name].lines}
+        assert len({lines[kind] for kind in WIRES}) == 3
+
+
+def test_wires_are_drawn_as_the_curves_that_they_are(twin_wires_shape):
+    """Cubic between nodes, and not straight: both wires, where they were drawn."""
+    ax, line = views.plot_static_shape(twin_wires_shape), twin_wires_shape.catenary
+    for wire, name in zip(twin_wires_shape.contact_wires, ("right", "left"), strict=True):
+        x, z = next(c for c in ax.lines if c.get_label() == f"{name} contact wire").get_data()
+        assert z == pytest.approx(1e3 * (wire.height(x) - 5.2))
+        bends = np.abs(np.diff(np.diff(z) / np.diff(x)))
+        clamps = np.union1d(line.support_positions, line.dropper_positions)
+        free = np.abs(x[1:-1, None] - clamps).min(axis=1) > 0.6
+        assert bends[free].max() < 0.2  # mm/m; straight between nodes it is 0.8 and more
+
+
+def boxes(ax, texts):
+    """Bounding boxes of texts, once the figure is laid out."""
+    FigureCanvasAgg(ax.figure)
+    ax.figure.draw_without_rendering()
+    return [text.get_window_extent() for text in texts]
+
+
+@pytest.mark.parametrize("name", ["curved_shape", "twin_wires_shape", "reference_shape"])
+def test_labels_do_not_overlap(request, name):
+    """Tensions of 45 droppers, distances, numbers, forces: none is written over another."""
+    shape = request.getfixturevalue(name)
+    figures = [views.plot_layout(shape.catenary, shape).figure, views.plot_static_shape(shape).figure]
+    if shape.catenary.is_spatial:
+        figures.append(views.plot_plan(shape).figure)
+    for figure in figures:
+        for ax in figure.axes:
+            texts = [text for text in ax.texts if text.get_text()]
+            found = boxes(ax, texts)
+            for i, a in enumerate(found):
+                over = [texts[j].get_text() for j in range(i) if a.overlaps(found[j])]
+                assert not over, (ax.get_title(loc="left"), texts[i].get_text(), over)
+
+
+def test_the_tension_of_every_dropper_is_drawn(twin_wires_shape):
+    heights, tensions = views.plot_static_shape(twin_wires_shape).figure.axes
+    texts = [t.get_text() for t in heights.texts]
+    assert texts == [f"{force:.0f} N" for force in twin_wires_shape.dropper_forces]
+    ends = np.concatenate([[s[1] for s in c.get_segments()] for c in tensions.collections])
+    assert sorted(ends[:, 1]) == pytest.approx(sorted(twin_wires_shape.dropper_forces))
+
+
+def test_elasticity_breaks_where_spans_were_not_computed():
+    x = np.array([0.0, 25, 50, 75, 100, 200, 225, 250])
+    curve = cf.Elasticity(
+        position=x, uplift=0.05 + 1e-4 * x, force=100.0, support_position=np.arange(0.0, 251, 50)
+    )
+    pieces = [line.get_xdata().tolist() for line in curve.plot().lines if line.get_marker() == "."]
+    assert pieces == [[0, 25, 50, 75, 100], [200, 225, 250]]
+
+
+def test_as_many_colours_as_supports(short_run):
+    run = cf.Run(short_run.data.assign_attrs(evaluated_spans="[1, 2, 3, 4]"))
+    ax = run.plot_support_uplift()
+    curves = [line.get_color() for line in ax.lines if "support" in str(line.get_label())]
+    assert len(curves) == len(set(curves)) == 3
+    bars = ax.figure.axes[1].patches
+    assert [mpl.colors.to_hex(bar.get_facecolor()) for bar in bars] == curves
+    assert [bar.get_height() for bar in bars] == pytest.approx(
+        1e3 * run.data["support_uplift"].values[1:-1].max(axis=1)
+    )
+    for count in (5, 14, 60):
+        assert len(set(sequence(count))) == len(set(distinct(count))) == count
+
+
+def test_spans_that_the_line_does_not_have(short_shape):
+    for draw in (views.plot_static_shape, views.plot_plan):
+        with pytest.raises(cf.InputError, match="span 5: the line has spans 1 to 4"):
+            draw(short_shape, spans=[4, 5])
+    with pytest.raises(cf.InputError, match="the line has spans 1 to 4"):
+        views.plot_layout(short_shape.catenary, spans=[0])

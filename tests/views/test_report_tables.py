@@ -10,6 +10,7 @@ from catenary_fe.views.report.tables import (
     schedule_table,
     slack_table,
     span_table,
+    support_table,
 )
 
 
@@ -66,8 +67,10 @@ def test_schedule(short_shape):
     table = schedule_table(short_shape, [3])
     assert len(table.rows) == 9
     lengths = [row.length_m for row in short_shape.dropper_schedule() if row.span == 3]
-    assert [float(row[2]) for row in table.rows] == pytest.approx(lengths, abs=5e-5)
-    assert len(table.columns) == 6  # all hang on the one messenger wire and hold the one contact wire
+    assert [float(row[4]) for row in table.rows] == pytest.approx(lengths, abs=5e-5)
+    assert [row[1] for row in table.rows] == list("123456789")
+    assert table.rows[0][2:4] == ["125.000", "5.000"]
+    assert len(table.columns) == 8  # all hang on the one messenger wire and hold the one contact wire
 
 
 def test_schedule_of_a_stitched_twin(reference_layout):
@@ -78,6 +81,17 @@ def test_schedule_of_a_stitched_twin(reference_layout):
     hung = [row[-1] for row in table.rows]
     assert hung[0] == hung[-1] == "stitch wire"
     assert set(hung[1:-1]) == {"messenger wire"}
+
+
+def test_supports(short_shape, twin_wires_shape):
+    table = support_table(short_shape)
+    assert [row[0] for row in table.rows] == ["1", "2", "3", "4", "5"]
+    assert table.rows[0][5] == "–"  # the wires' anchor has no arm
+    assert float(table.rows[1][5]) == pytest.approx(short_shape.steady_arm_forces[1], abs=0.05)
+    both = support_table(twin_wires_shape).rows[1]
+    assert both[2] == "-0.220, -0.180"
+    pulls = [float(text) for text in both[6].split(", ")]
+    assert sum(pulls) == pytest.approx(twin_wires_shape.steady_arm_lateral_forces[1], abs=0.1)
 
 
 def test_numbers_stand_right():

@@ -8,8 +8,8 @@ from typing import Any
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Criterion, Elasticity, Run, criteria_rows
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError, Panhead, Pantograph, PowerSystem
-from catenary_fe.views import layout, plan, run_waves
+from catenary_fe.system import InputError, PowerSystem
+from catenary_fe.views import layout, plan, run_waves, static
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
 from catenary_fe.views.report.html import svg_address, template
@@ -61,6 +61,7 @@ def report_page(
         "slack": tables.slack_table(run),
         "schedule": tables.schedule_table(shape, spans if several else spans[:1]),
         "whole_schedule": tables.schedule_table(shape, None),
+        "supports": tables.support_table(shape),
         "inputs": tables.input_tables(run),
         "pictures": _pictures(run, shape, elasticity, waves=motion is not None),
         "data": {
@@ -91,18 +92,17 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
         "uplift": svg_address(run_pictures.plot_support_uplift(run)),
         "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
-        "shape": svg_address(layout.plot_static_shape(shape, spans=run.evaluated_spans[:2])),
+        "shape": svg_address(static.plot_static_shape(shape)),
     }
     if run.has_energy:
         pictures["energy"] = svg_address(run_pictures.plot_energy(run))
     if run.reached:
         pictures["spectrum"] = svg_address(plot_force_spectrum(run))
     if shape.catenary.is_spatial:
-        heads = [p.head for p in run.pantographs if isinstance(p, Pantograph) and p.head]
-        head = heads[0] if heads else Panhead()
-        pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=head.width))
+        width = plan.head_width(run.pantographs)
+        pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=width))
     if elasticity:
-        pictures["elasticity"] = svg_address(layout.plot_elasticity(elasticity))
+        pictures["elasticity"] = svg_address(static.plot_elasticity(elasticity))
     if waves:
         pictures["waves"] = svg_address(
             run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.views.scene import Scene, scene
-from catenary_fe.views.style import PANTOGRAPHS
+from catenary_fe.views.scene import MASS_GAP, Scene, scene
+from catenary_fe.views.style import PANTOGRAPHS, sequence, wire_colour
 
 Floats = NDArray[np.float64]
 _POINTS = 8000  # of a curve
@@ -48,14 +48,15 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
 def uplift_chart(run: Run) -> dict[str, Any]:
     """Uplift at the supports against time, in mm."""
     every = _stride(run.time.size, _POINTS // 4)
-    evaluated = sorted({s for n in run.evaluated_spans for s in (n - 1, n)})
     uplift = 1e3 * run.data["support_uplift"].values[:, ::every]
     inner = range(1, uplift.shape[0] - 1)
+    evaluated = [i for i in inner if {i, i + 1} & set(run.evaluated_spans)]
     shown = [i for i in inner if i in evaluated or len(inner) <= _SUPPORTS]
+    colours = dict(zip(evaluated, sequence(len(evaluated)), strict=True))
     series = [
         {
             "label": f"support {i + 1}",
-            "colour": PANTOGRAPHS[evaluated.index(i) % len(PANTOGRAPHS)] if i in evaluated else "#999999",
+            "colour": colours.get(i, "#999999"),
             "faint": i not in evaluated,
             "shown": True,
             "values": _numbers(uplift[i], 2),
@@ -96,12 +97,13 @@ def motion(run: Run) -> dict[str, Any]:
                 "name": str(name),
                 "colour": PANTOGRAPHS[i % len(PANTOGRAPHS)],
                 "x": _numbers(seen.pantograph_x[i], 3),
+                "rest": _numbers(seen.rest[i], 5),
                 "masses": [_numbers(m, 5) for m in seen.masses[i]],
                 "force": _numbers(seen.force[i], 1),
             }
             for i, name in enumerate(names)
         ],
-        "nominal": seen.nominal,
+        "mass_gap": MASS_GAP,
         "band": _evaluated(run),
     }
 
@@ -113,6 +115,7 @@ def _wire(seen: Scene, number: int) -> dict[str, Any]:
     return {
         "name": wire.name,
         "touched": wire.touched,
+        "colour": wire_colour(wire.name),
         "x": _numbers(wire.x, 3),
         "static": _numbers(wire.static, 5),
         "unit": unit,

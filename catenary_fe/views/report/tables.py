@@ -11,6 +11,7 @@ import numpy as np
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Criterion, ForceStatistics, Run, labels, missed
+from catenary_fe.results.csv_files import cell, common_name, decimals_of
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
@@ -153,11 +154,14 @@ def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
     """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
     caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
     schedule = [row for row in shape.dropper_schedule() if spans is None or row.span in spans]
-    columns = ["span", "at (m)", "length (m)", "installed (m)", "force (N)", "height error (mm)"]
+    columns = ["span", "dropper", "chainage (m)", "in the span at (m)", "length (m)", "installed (m)",
+               "force (N)", "height error (mm)"]  # fmt: skip
     rows = [
         [
             str(row.span),
-            f"{row.position_m:g}",
+            str(row.dropper),
+            f"{row.chainage_m:.3f}",
+            f"{row.position_m:.3f}",
             f"{row.length_m:.4f}",
             f"{row.installed_length_m:.4f}",
             f"{row.force_N:.1f}",
@@ -172,6 +176,27 @@ def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
             for cells, value in zip(rows, values, strict=True):
                 cells.append(value)
     return Table(f"Dropper schedule, {caption}", columns, rows)
+
+
+def support_table(shape: Shape) -> Table:
+    """Where the wires are at each support, and what it and its steady arm hold."""
+    columns = {
+        "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
+        "contact_wire_height_m": "contact wire at (m)", "system_height_m": "system height (m)",
+        "arm_vertical_N": "arm, up (N)", "arm_lateral_N": "arm, left (N)",
+        "messenger_vertical_N": "messenger wire, up (N)", "messenger_lateral_N": "messenger wire, left (N)",
+        "messenger_wire_tension_kN": "its tension (kN)",
+    }  # fmt: skip
+    rows = []
+    for support in shape.support_schedule():
+        flat = support.as_dict()
+        cells = [str(support.support)]
+        for key in columns:
+            found = [value for name, value in flat.items() if common_name(name) == key and value is not None]
+            digits = decimals_of(key)
+            cells.append(", ".join(str(cell(value, digits)) for value in found) or "–")
+        rows.append(cells)
+    return Table("Supports; of two contact wires the right one first", ("support", *columns.values()), rows)
 
 
 def input_tables(run: Run) -> list[Table]:

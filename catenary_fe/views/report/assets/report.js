@@ -81,9 +81,7 @@
       this.end = motion.time[motion.time.length - 1];
       this.playing = false;
       this.forceTop = 1.1 * Math.max(...motion.pantographs.map((p) => Math.max(...p.force)));
-      const heights = motion.wires.flatMap((w) => w.static.filter((z) => z != null));
-      this.high = Math.max(...heights) + 0.45;
-      this.low = motion.nominal - 0.3 * (1.5 + Math.max(...motion.pantographs.map((p) => p.masses.length)));
+      this.range();
       this.whole = [motion.supports.x[0], motion.supports.x[motion.supports.x.length - 1]];
       this.controls();
       new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -96,12 +94,37 @@
       return found < 0 ? pantograph.x.length - 1 : found;
     }
 
+    range() {                                   // heights of all that is drawn, in all frames
+      const magnified = +$("magnified").value;
+      let low = Infinity, high = -Infinity;
+      const reach = (z) => { low = Math.min(low, z); high = Math.max(high, z); };
+      for (const w of this.m.wires) {
+        const n = w.x.length;
+        w.rows.forEach((move, i) => {
+          const rest = w.static[i % n];
+          if (rest != null) reach(rest + magnified * w.unit * move);
+        });
+      }
+      for (const p of this.m.pantographs) {
+        p.rest.forEach((rest, frame) => {
+          reach(rest);
+          p.masses.forEach((m, n) => reach(this.massHeight(p, n, frame, magnified)));
+        });
+      }
+      [this.low, this.high] = [low - this.m.mass_gap, high + this.m.mass_gap];
+    }
+
+    massHeight(p, n, frame, magnified) {        // below the wire at rest
+      return p.rest[frame] - this.m.mass_gap * n + magnified * p.masses[n][frame];
+    }
+
     controls() {
       const slider = $("time");
       slider.max = this.m.time.length - 1;
       slider.addEventListener("input", () => this.seek(this.m.time[+slider.value]));
       $("play").addEventListener("click", () => this.toggle());
-      for (const id of ["magnified", "view"]) $(id).addEventListener("input", () => this.draw());
+      $("magnified").addEventListener("input", () => { this.range(); this.draw(); });
+      $("view").addEventListener("input", () => this.draw());
     }
 
     toggle() {
@@ -213,7 +236,7 @@
       });
       c.setLineDash([]);
       this.m.wires.forEach((w, k) => {
-        c.strokeStyle = w.touched ? "#c44e1c" : "#1f5a85";
+        c.strokeStyle = w.colour;
         c.lineWidth = 1.7;
         c.beginPath();
         let pen = false;
@@ -236,7 +259,6 @@
 
     drawPantographs(c, X, Z, F, frame, lines, a, b) {
       const magnified = +$("magnified").value, contact = this.m.wires.findIndex((w) => w.touched);
-      const nominal = this.m.nominal;
       this.m.pantographs.forEach((p, k) => {
         const x = p.x[frame], head = at(this.m.wires[contact].x, lines[contact], x);
         c.strokeStyle = c.fillStyle = p.colour;
@@ -244,7 +266,7 @@
         line(c, X(x), Z(head), 0, Z(this.low) - Z(head));
         c.fillRect(X(x) - 11, Z(head), 22, 5);
         p.masses.forEach((m, n) => {
-          if (n) c.fillRect(X(x) - 6, Z(nominal + magnified * m[frame] - 0.3 * n) - 5, 12, 10);
+          if (n) c.fillRect(X(x) - 6, Z(this.massHeight(p, n, frame, magnified)) - 5, 12, 10);
         });
         for (const [end, alpha] of [[b, 0.25], [Math.min(x, b), 1]]) {
           c.globalAlpha = alpha;
