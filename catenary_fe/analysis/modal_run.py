@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium import Shape
+from catenary_fe.fe.solver_settings import SHORTEST_STEP
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import Modes
 from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Pantograph
+from catenary_fe.system.arguments import checked, number
 
 Floats = NDArray[np.float64]
+_log = logging.getLogger(__name__)
 _PIECES = 8  # straight pieces of an elastic pantograph's law to try in a step
 
 
+@checked
 def modal_run(
     shape: Shape,
     modes: Modes,
@@ -39,11 +44,14 @@ def modal_run(
     step : [s]
     at_rest : start from the unloaded line instead of from static contact
 
-    Raises InputError where the run does not fit on the line, no mode is left, or the contact has a damper.
+    A pantograph's ``mean_force`` is taken as its uplift, which is said in the log.
+
+    Raises InputError where the run does not fit on the line, no mode is left, the modes are of another line
+    or mesh, the contact has a damper, or line or head have more than one point of contact.
     """
-    check_shape(shape)
-    if not (np.isfinite(speed) and speed > 0):  # no upper bound: studies go beyond the wave speed
-        raise InputError(f"speed = {speed!r} m/s: must be above 0")
+    number("speed", speed, "m/s", above=0.0)  # no upper bound: studies go beyond the wave speed
+    number("step", step, "s", least=SHORTEST_STEP)
+    _check_fit(shape, modes)
     margin = float(np.diff(shape.catenary.support_positions).min()) / 6
     first = margin if start is None else start
     way = shape.catenary.length - margin - first if distance is None else distance
@@ -54,6 +62,10 @@ def modal_run(
     if not len(modes):
         raise InputError("modal run: no mode is left below the cut-off; raise it")
     count = int(np.floor(way / (speed * step) + 1e-9)) + 1
+    if count < 2:
+        raise InputError(
+            f"modal run: {way:g} m are passed in less than a step of {step:g} s; shorten the step"
+        )
     time: Floats = step * np.arange(count, dtype=np.float64)
     position: Floats = first + speed * time
     line, head = _ModalLine(modes, position, step), _head(pantograph, speed, step)
@@ -72,6 +84,14 @@ def modal_run(
         masses[n] = head.heights
     nominal = shape.catenary.contact_wire_height
     return ModalRun(modes, time, position, force, nominal + sag + lift, nominal + masses.T, coordinates)
+
+
+def _check_fit(shape: Shape, modes: Modes) -> None:
+    """Raises InputError for modes of another line or mesh, and for lines with two contact wires."""
+    if modes.catenary != shape.catenary or not np.array_equal(modes.contact.x, shape.wires[0].x):
+        raise InputError("modal run: the modes are of another line or mesh; give solve_modes(shape)")
+    if len(shape.contact_wires) > 1:
+        raise InputError("modal run: the line has two contact wires, the modal run knows one; use simulate")
 
 
 class _ModalLine:
@@ -198,6 +218,16 @@ class _Chain:
 def _head(pantograph: AnyPantograph, speed: float, step: float) -> _Elastic | _Chain:
     if isinstance(pantograph, ElasticPantograph):
         return _Elastic(pantograph, np.zeros(0), np.zeros(0))
+    if pantograph.head and pantograph.head.strips > 1:
+        raise InputError(
+            f"{pantograph.name}: head.strips = 2: a modal run has one point of contact; leave the head out,"
+            " or use simulate"
+        )
+    if pantograph.mean_force is not None:
+        _log.warning(
+            f"{pantograph.name}: a modal run takes mean_force as the uplift; with the base's spring the mean"
+            " comes out a little different"
+        )
     if pantograph.contact_damping:
         raise InputError(
             f"{pantograph.name}: contact_damping = {pantograph.contact_damping:g} N s/m: a modal run has no"

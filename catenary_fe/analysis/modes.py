@@ -6,30 +6,31 @@ import logging
 
 import numpy as np
 
-from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modes import Modes, WireShapes
-from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, number, whole
 
+_HIGHEST = 1e4  # [Hz] no mesh of a line resolves more
 _log = logging.getLogger(__name__)
 
 
+@checked
 def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
     """Eigenfrequencies and shapes about the static state, droppers taut; sparse, so that long lines work.
 
     shape : the catenary in static equilibrium, with its mesh
-    count : how many modes, from the lowest; unset, and with no ``below``: 40
+    count : how many modes, from the lowest, as far as the mesh holds them; unset, and with no ``below``: 40
     below : [Hz] all modes up to this frequency (with ``count``: at most so many)
 
-    Raises InputError for a count or frequency that is not positive or more than the mesh holds, or a
-    dropper that is slack at rest; SolverError where the eigenvalue iteration fails.
+    Raises InputError for a count or frequency that is not positive, more than a third of all modes of a long
+    line, or a dropper that is slack at rest; SolverError where the eigenvalue iteration fails.
     """
     from catenary_fe.fe.modal import linear_system, solve_eigen
 
-    check_shape(shape)
-    if count is not None and count < 1:
-        raise InputError(f"modes: count = {count}: must be at least 1")
-    if below is not None and not (np.isfinite(below) and below > 0):
-        raise InputError(f"modes: below = {below!r} Hz: must be above 0")
+    if count is not None:
+        whole("modes: count", count, least=1)
+    if below is not None:
+        number("modes: below", below, "Hz", above=0.0, most=_HIGHEST)
     system = linear_system(shape.catenary, shape.mesh, shape.installation)
     nodes = [wire.x.size for wire in shape.mesh.wires]
     wanted = count or (40 if below is None else _expected(shape, below))

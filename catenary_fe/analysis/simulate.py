@@ -22,10 +22,11 @@ from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
 from catenary_fe.analysis.record import make_run, run_key
 from catenary_fe.analysis.resources import check_memory, demand
-from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.system import AnyPantograph, CatenaryError, InputError
+from catenary_fe.system.arguments import checked, number, numbers, one_of
 
 if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
@@ -53,6 +54,7 @@ class Plan:
     distance: float
 
 
+@checked
 def simulate(
     shape: Shape,
     pantographs: Sequence[AnyPantograph],
@@ -75,7 +77,7 @@ def simulate(
     speed : [m/s]
     positions : [m] along the line at the start, one a pantograph; unset (for one): near the first support
     time : settings of the time integration
-    store_wire : [s] between stored shapes of the whole wires; unset: none
+    store_wire : [s] between stored shapes of the whole wires, rounded to whole time steps; unset: none
     progress : called with the share done, 0 to 1
     method : "nonlinear" in compiled code; "exudyn" the same with Exudyn's own solver, many times slower, to
         compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
@@ -91,11 +93,10 @@ def simulate(
     the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
     the mean force is not reached, Interrupted after Ctrl-C; both have the run until then as ``partial``.
     """
-    check_shape(shape)
     check_pantographs(pantographs)
     time = time or TimeSettings()
-    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
     _check_options(speed, method, energy, time, store_wire)
+    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
     if checkpoint is not None and not compiled:
         raise InputError(
             f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
@@ -137,19 +138,23 @@ def _check_options(
     speed: float, method: Method, energy: bool, time: TimeSettings, store_wire: float | None
 ) -> None:
     check_speed(speed)
-    if method not in get_args(Method):
-        raise InputError(f"method = {method!r}: must be one of {', '.join(get_args(Method))}")
+    one_of("method", method, get_args(Method))
     if energy and method == "linearised":
         raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
-    if store_wire is not None and not (np.isfinite(store_wire) and store_wire >= time.step):
-        raise InputError(f"store_wire = {store_wire!r} s: must be at least the time step, {time.step:g} s")
+    if store_wire is not None:
+        number("store_wire", store_wire, "s", least=time.step, remedy="that is the time step")
 
 
 def _check_room(
     shape: Shape, case: Case, time: TimeSettings, store_wire: float | None, method: Method
 ) -> None:
     """Raises InputError for a run that takes more memory than there is."""
-    steps = int(case.distance / (case.speed * time.step))
+    duration = case.distance / case.speed
+    if store_wire is not None and store_wire > duration:
+        raise InputError(
+            f"store_wire = {store_wire:g} s is longer than the run, {duration:.4g} s; shorten it"
+        )
+    steps = int(duration / time.step)
     shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
     needs = demand(shape.catenary, shape.mesh, case.pantographs, steps, shapes, method)
     check_memory(needs, f"run at {3.6 * case.speed:g} km/h")
@@ -237,8 +242,8 @@ def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Pla
                 f"{count} pantographs need their positions at the start, in metres along the line"
             )
         positions = [margin]
-    start = np.asarray(positions, dtype=float)
-    if start.size != count:
+    start = np.atleast_1d(numbers("positions", positions))
+    if start.shape != (count,):
         raise InputError(f"{start.size} positions for {count} pantographs: give one for each")
     for value in start:
         if not margin <= value < length - margin:

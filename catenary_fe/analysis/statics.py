@@ -8,13 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium import Shape, check_shape
+from catenary_fe.equilibrium import Shape
 from catenary_fe.equilibrium.loaded import LoadedLine
 from catenary_fe.results import Elasticity
 from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, number, numbers, on_the_wire, span_numbers, whole
 from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
+MOST_FORCE = 1e4  # [N] more would lift the wire over its supports
+POINTS = 24  # of a span
+MOST_POINTS = 10_000
 
 
 @changed_by_copy
@@ -35,6 +40,7 @@ class StaticState:
     dropper_forces: Floats
 
 
+@checked
 def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> StaticState:
     """Static equilibrium under vertical forces on the contact wire; droppers may go slack.
 
@@ -42,11 +48,14 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
 
     Raises InputError for positions beyond the line, SolverError if there is no equilibrium.
     """
-    check_shape(shape)
-    _check_positions(shape, np.array([x for x, _ in forces], dtype=float))
+    pairs = numbers("forces", forces, each="pairs of position and force")
+    if pairs.size and (pairs.ndim != 2 or pairs.shape[1] != 2):
+        raise InputError(f"forces = {shorten(forces)}: must be pairs of position [m] and force [N]")
+    x, force = pairs.reshape(-1, 2).T
+    x = on_the_wire("position", x, shape.catenary.support_positions)
     line = LoadedLine(shape)
     system, mesh = line.system, shape.mesh
-    moved = line.solve([x for x, _ in forces], [f for _, f in forces])
+    moved = line.solve(x.tolist(), force.tolist())
     total = (system.reference + moved).reshape(-1, 2 * system.axes)
     ends, up = mesh.first_nodes, system.axes - 1
     contact = total[: ends[1]]
@@ -62,13 +71,14 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
     )
 
 
+@checked
 def elasticity(
     shape: Shape,
     *,
     force: float = 100.0,
     spans: Sequence[int] | None = None,
     positions: Sequence[float] | Floats | None = None,
-    points_per_span: int = 24,
+    points_per_span: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Elasticity:
     """Uplift of the contact wire under a static force, point by point; droppers may go slack.
@@ -76,23 +86,26 @@ def elasticity(
     force : [N] upward
     spans : numbers of spans, from 1; unset: the evaluated ones
     positions : [m] along the line, instead of spans
-    points_per_span : evenly spread, besides the droppers and supports
+    points_per_span : evenly spread, besides the droppers and supports; unset: 24
 
-    Raises InputError for a force that is not positive or positions beyond the line.
+    Raises InputError for a force that is not positive, positions beyond the line, and for positions beside
+    spans or points_per_span.
     """
-    check_shape(shape)
-    if not (np.isfinite(force) and force > 0):
-        raise InputError(f"elasticity: force = {force!r} N: must be above 0; 100 to 200 N are usual")
-    if points_per_span < 2:
-        raise InputError(f"elasticity: points_per_span = {points_per_span}: at least 2 are needed")
-    x = (
-        _points(shape, spans or shape.catenary.spans_to_evaluate, points_per_span)
-        if positions is None
-        else np.sort(np.asarray(positions, dtype=float))
-    )
-    _check_positions(shape, x)
+    catenary = shape.catenary
+    number("elasticity: force", force, "N", above=0.0, most=MOST_FORCE, remedy="100 to 200 N are usual")
+    if positions is None:
+        count = POINTS if points_per_span is None else points_per_span
+        whole("elasticity: points_per_span", count, least=2, most=MOST_POINTS)
+        numbered = span_numbers(spans, len(catenary.spans), catenary.spans_to_evaluate)
+        x = _points(shape, numbered, count)
+    elif spans is not None or points_per_span is not None:
+        raise InputError("elasticity: positions and spans or points_per_span: give one or the other")
+    else:
+        x = np.sort(np.atleast_1d(on_the_wire("position", positions, catenary.support_positions)))
+    if x.ndim != 1 or not x.size:
+        raise InputError(f"elasticity: positions = {shorten(positions)}: must be a list of positions [m]")
     lifts = LoadedLine(shape).lifts(x, force, progress)
-    supports = shape.catenary.support_positions
+    supports = catenary.support_positions
     inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
     return Elasticity(position=x, uplift=lifts, force=force, support_position=inside)
 
@@ -101,16 +114,7 @@ def _points(shape: Shape, spans: Sequence[int], count: int) -> Floats:
     catenary = shape.catenary
     supports, droppers = catenary.support_positions, catenary.dropper_positions
     parts = []
-    for number in spans:
-        if not 1 <= number <= len(catenary.spans):
-            raise InputError(f"span {number}: the line has spans 1 to {len(catenary.spans)}")
-        a, b = supports[number - 1], supports[number]
+    for n in spans:
+        a, b = supports[n - 1], supports[n]
         parts += [np.linspace(a, b, count + 1), droppers[(droppers > a) & (droppers < b)]]
     return np.unique(np.round(np.concatenate(parts), 9))
-
-
-def _check_positions(shape: Shape, x: Floats) -> None:
-    length = shape.catenary.length
-    for value in x:
-        if not 0 <= value <= length:
-            raise InputError(f"position {value:g} m lies beyond the line, which runs from 0 to {length:g} m")

@@ -31,6 +31,7 @@ from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
+from catenary_fe.system.arguments import whole
 
 Progress = Callable[[int, int], None]
 LOST = "lost"  # marks the record of a case that was killed: it is not kept
@@ -170,7 +171,9 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
 
 
 def _workers(jobs: int) -> int:
-    return jobs if jobs > 0 else os.cpu_count() or 1
+    if jobs != -1:
+        return whole("jobs", jobs, least=1)
+    return os.cpu_count() or 1
 
 
 def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:

@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool, quiet: bool) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
-    _check_drawn(catenary, spans, output)
     check_lengths(catenary)
+    _check_drawn(catenary, spans, output)
     facts = layout_facts(catenary)
     warnings = layout_warnings(catenary)
     with output_folder(output) as folder:
@@ -160,16 +160,16 @@ def form(
     from catenary_fe.equilibrium import find_form
 
     catenary = read_layout(layout, planar)
-    _check_drawn(catenary, spans, output)
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
+    _check_drawn(catenary, spans, output)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:
         with working("form finding", not quiet):
             shape = find_form(catenary)
         result: dict[str, Any] = {
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "droppers": [row.as_dict() for row in shape.dropper_schedule()],
             "supports": [row.as_dict() for row in shape.support_schedule()],
-            "dropper_lengths_given": catenary.gives_dropper_lengths,
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),

@@ -9,6 +9,7 @@ import click
 
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import json_option, print_json, quiet_option
+from catenary_fe.system.arguments import number
 
 
 @click.command(
@@ -18,7 +19,7 @@ from catenary_fe.cli.terminal import json_option, print_json, quiet_option
 @click.option(
     "-o", "--output", type=click.Path(), metavar="DIR", help="Folder for the files; unset: FOLDER/csv."
 )
-@click.option("--every-ms", type=float, help="Interval of the rows in ms; unset: every time step.")
+@click.option("--every-ms", type=float, help="Interval of the rows in ms, rounded to time steps; unset: one.")
 @click.option(
     "--filter",
     "filter_kind",
@@ -38,7 +39,12 @@ def export(
     from catenary_fe.results.export import history_tables, write_tables
 
     run = run_in(folder)
-    every = 1 if every_ms is None else round(every_ms / 1e3 / run.step)
+    every = 1
+    if every_ms is not None:
+        number(
+            "--every-ms", every_ms, "ms", least=1e3 * run.step, remedy="the run's time step is the shortest"
+        )
+        every = round(every_ms / 1e3 / run.step)
     target = (
         Path(output) if output else Path(folder if Path(folder).is_dir() else Path(folder).parent) / "csv"
     )

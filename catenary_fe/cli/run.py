@@ -101,8 +101,8 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 @click.option(
     "--store-wire-ms",
     type=click.FloatRange(0.0),
-    help="Interval of the stored shapes of the whole wires, 0 for none; unset: 10 with -o, which reports and"
-    " films need.",
+    help="Interval of the stored shapes of the whole wires, rounded to time steps, 0 for none; unset: 10 with"
+    " -o, which reports and films need.",
 )
 @click.option(
     "--energy",
@@ -147,6 +147,8 @@ def run(
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
     files = InputFiles.read(layout, names)
+    if store_wire_ms and not output:
+        raise click.UsageError("--store-wire-ms has no effect without -o, whose folder keeps the shapes")
     if store_wire_ms is None:
         store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()

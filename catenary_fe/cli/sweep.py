@@ -74,7 +74,7 @@ _FIGURES = (
 @click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
 @click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
 @spans_option
-@click.option("--jobs", type=int, default=-1, help="Number of processes; unset: one a core.")
+@click.option("--jobs", type=click.IntRange(1), help="Number of processes; unset: one a core.")
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
 @click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
 @click.option(
@@ -92,7 +92,7 @@ def sweep(
     time_step_ms: float,
     element_m: float | None,
     spans: list[int] | None,
-    jobs: int,
+    jobs: int | None,
     scheduler: str | None,
     retry_failed: bool,
     output: str,
@@ -103,6 +103,8 @@ def sweep(
     from catenary_fe.analysis.sweep import LOST, SweepSettings, run_sweep
     from catenary_fe.fe import MeshSettings, TimeSettings
 
+    if jobs and scheduler:
+        raise click.UsageError("--jobs and --scheduler: the cluster has its own processes; give one of them")
     axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
     axes |= dict(_variation(text) for text in variations)
     count = math.prod(len(values) for values in axes.values())
@@ -119,7 +121,7 @@ def sweep(
             cases,
             settings,
             output,
-            jobs=jobs,
+            jobs=jobs or -1,
             scheduler=scheduler,
             retry=retry_failed,
             progress=(lambda done, all_: progress(done / all_)) if progress else None,
@@ -131,6 +133,7 @@ def sweep(
     elif not quiet:
         _print(rows, axes)
         click.echo(f"table and pictures in {output}")
+    if not quiet:
         _say_lengths(cases)
     failed = [record for record in records if "error" in record]
     for record in failed:

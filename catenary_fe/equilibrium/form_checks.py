@@ -9,18 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
-from catenary_fe.system.parameters import shorten
+from catenary_fe.system.arguments import numbers
 
 Floats = NDArray[np.float64]
 
 STEEPEST = np.pi / 3  # [rad] a steady arm that stands up more has no hold on the wire
 _LEAST_PULL = 1.0  # [N] sideways
-
-
-def check_catenary(catenary: object) -> None:
-    """Raises InputError for what is not a catenary, such as the name of a file."""
-    if not isinstance(catenary, Catenary):
-        raise InputError(f"catenary = {shorten(catenary)}: must be a Catenary; load_catenary reads a file")
 
 
 def dropper_names(catenary: Catenary) -> list[str]:
@@ -44,11 +38,29 @@ def check_pulls(catenary: Catenary, pulls: Floats) -> None:
 
 def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
+    tension = catenary.messenger_wire.tension
     _report(
         f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
-        " system_height or the messenger wire's tension"
+        f" system_height or the messenger wire's tension of {tension:g} N"
         for name, height in zip(dropper_names(catenary), heights, strict=True)
         if height <= 0
+    )
+
+
+def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> None:
+    """Raises InputError for droppers so soft that their tension stretches them from no length at all.
+
+    distances : [m], shape (droppers,), between their clamps
+    tensions : [N], shape (droppers,)
+    """
+    stiffness = [d.stiffness for d in catenary.droppers]
+    _report(
+        f"{name}: stiffness = {k:g} N/m is too small: its tension of {tension:.0f} N would stretch it by"
+        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it, look at its unit"
+        for name, k, distance, tension in zip(
+            dropper_names(catenary), stiffness, distances, tensions, strict=True
+        )
+        if tension / k >= distance
     )
 
 
@@ -96,7 +108,7 @@ def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) 
         if missing:
             raise InputError(f"{missing[0]} has no length ({len(missing)} droppers in all); give all lengths")
         lengths = np.array(given, dtype=float)
-    values = np.asarray(lengths, dtype=float)
+    values = numbers("lengths", lengths)
     if values.shape != (len(names),):
         raise InputError(f"{values.size} dropper lengths for {len(names)} droppers: give one each")
     heights = catenary.messenger_support_heights

@@ -11,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from catenary_fe.equilibrium.schedules import DropperRow, SupportRow, dropper_rows, support_rows
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary
 from catenary_fe.system.arguments import on_the_wire
 from catenary_fe.system.frozen import changed_by_copy
-from catenary_fe.system.parameters import shorten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -182,9 +181,3 @@ class Shape:
         from catenary_fe.views import plot_static_shape
 
         return plot_static_shape(self, ax=ax)
-
-
-def check_shape(shape: object) -> None:
-    """Raises InputError for what is not a static shape, such as the catenary itself."""
-    if not isinstance(shape, Shape):
-        raise InputError(f"shape = {shorten(shape)}: must be a static shape; give find_form(catenary)")

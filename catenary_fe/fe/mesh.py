@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.system import Catenary, InputError
+from catenary_fe.system.arguments import number
 from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
@@ -42,11 +43,8 @@ class MeshSettings:
 
     def __post_init__(self) -> None:
         for name in ("contact_wire_element", "messenger_wire_element", "at_clamps"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise InputError(f"mesh: {name} = {value!r} m: must be a positive length")
-        if not (np.isfinite(self.growth) and self.growth >= 1):
-            raise InputError(f"mesh: growth = {self.growth!r}: must be a ratio of at least 1")
+            number(f"mesh: {name}", getattr(self, name), "m", above=0.0)
+        number("mesh: growth", self.growth, least=1.0)
 
     def halved(self) -> MeshSettings:
         """The same mesh with elements half as long."""

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from catenary_fe.system import InputError
+from catenary_fe.system.arguments import number
 from catenary_fe.system.frozen import changed_by_copy
 
 SHORTEST_STEP = 1e-6  # [s] below it a run takes weeks, and its histories more memory than there is
@@ -29,11 +27,6 @@ class TimeSettings:
     spectral_radius: float = 0.9
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and SHORTEST_STEP <= self.step <= 0.02):
-            raise InputError(
-                f"time step = {self.step!r} s: must lie between {SHORTEST_STEP:g} and 0.02 s; 0.001 is usual"
-            )
-        if not 0 < self.tolerance <= 1e-2:
-            raise InputError(f"tolerance = {self.tolerance!r}: must lie between 0 and 0.01")
-        if not 0 <= self.spectral_radius <= 1:
-            raise InputError(f"spectral_radius = {self.spectral_radius!r}: must lie between 0 and 1")
+        number("time step", self.step, "s", least=SHORTEST_STEP, most=0.02, remedy="0.001 s is usual")
+        number("tolerance", self.tolerance, above=0.0, most=0.01)
+        number("spectral_radius", self.spectral_radius, least=0.0, most=1.0)

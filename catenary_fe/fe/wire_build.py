@@ -24,6 +24,7 @@ from catenary_fe.fe.wire import (
 )
 from catenary_fe.fe.wire_problem import Function, WireProblem
 from catenary_fe.system import GRAVITY, InputError
+from catenary_fe.system.arguments import numbers
 from catenary_fe.theory import MovingForce
 
 Floats = NDArray[np.float64]
@@ -91,7 +92,7 @@ def set_initial_velocity(system: WireSystem, problem: WireProblem) -> None:
         return
     data = system.mbs.systemData
     v = data.GetODE2Coordinates_t(configuration=exu.ConfigurationType.Initial)
-    rate, slope_rate = _values_and_slopes(problem.initial_velocity, system.wire.line.x)
+    rate, slope_rate = _values_and_slopes(problem.initial_velocity, system.wire.line.x, "initial_velocity")
     of_wire = v[system.part].reshape(-1, COORDINATES)
     of_wire[:, UP], of_wire[:, UP + 2] = rate, slope_rate
     v[system.part] = of_wire.ravel()
@@ -144,13 +145,17 @@ def _initial_line(problem: WireProblem, height: float) -> WireLine:
     x = np.asarray(problem.x, dtype=float)
     deflection, slope = np.zeros(x.size), np.zeros(x.size)
     if problem.initial_deflection is not None:
-        deflection, slope = _values_and_slopes(problem.initial_deflection, x)
+        deflection, slope = _values_and_slopes(problem.initial_deflection, x, "initial_deflection")
     return WireLine.through(problem.wire, np.column_stack([x, height + deflection]), slope[:, None])
 
 
-def _values_and_slopes(function: Function, x: Floats) -> tuple[Floats, Floats]:
-    slopes = (function(x + _DIFFERENCE) - function(x - _DIFFERENCE)) / (2 * _DIFFERENCE)
-    return np.asarray(function(x), dtype=float), np.asarray(slopes, dtype=float)
+def _values_and_slopes(function: Function, x: Floats, name: str) -> tuple[Floats, Floats]:
+    """Raises InputError where the function does not give one finite value a position."""
+    before, values, after = (
+        numbers(f"{name}(x)", function(at), shape=x.shape, each="one value a position")
+        for at in (x - _DIFFERENCE, x, x + _DIFFERENCE)
+    )
+    return values, (after - before) / (2 * _DIFFERENCE)
 
 
 def _hold(mbs: exu.MainSystem, items: WireItems, ground: int, problem: WireProblem) -> None:

@@ -9,8 +9,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.mesh import MOST_ELEMENTS
 from catenary_fe.system import InputError, Pantograph, Wire
+from catenary_fe.system.arguments import instance, number, numbers
 from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.system.parameters import shorten
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]
@@ -31,6 +34,12 @@ class SlidingPantograph:
     uplift: float
     speed: float
     start: float = 0.0
+
+    def __post_init__(self) -> None:
+        instance("pantograph", self.pantograph, Pantograph, "such as library.pantograph('DSA250')")
+        number("uplift", self.uplift, "N")
+        number("speed", self.speed, "m/s", least=0.0)
+        number("start", self.start, "m")
 
 
 Load = MovingForce | ElasticPantograph | SlidingPantograph
@@ -72,14 +81,39 @@ class WireProblem:
     loads: Sequence[Load] = ()
 
     def __post_init__(self) -> None:
-        x = np.asarray(self.x, dtype=float)
+        instance("wire", self.wire, Wire, "library.wire(name, tension=...) gives one")
+        x = numbers("x", self.x)
         if x.ndim != 1 or x.size < 2 or not (np.diff(x) > 0).all():
             raise InputError("x: the nodes' positions must rise; give at least two")
-        for position in (*self.supports, *self.masses, *self.springs, *self.dampers):
+        number("foundation_stiffness", self.foundation_stiffness, "N/m²", least=0.0)
+        for name in ("masses", "springs", "dampers"):
+            given = getattr(self, name)
+            if not isinstance(given, Mapping):
+                raise InputError(f"{name} = {shorten(given)}: must be a table {{position: value}}")
+            for position, value in given.items():
+                number(f"{name}: value at {shorten(position)} m", value, least=0.0)
+        for position in (
+            *np.atleast_1d(numbers("supports", self.supports)),
+            *self.masses,
+            *self.springs,
+            *self.dampers,
+        ):
             self.node(position)
+        for name in ("initial_deflection", "initial_velocity"):
+            if getattr(self, name) is not None and not callable(getattr(self, name)):
+                raise InputError(f"{name} = {shorten(getattr(self, name))}: must be a function of positions")
+        if isinstance(self.loads, str) or not isinstance(self.loads, Sequence):
+            raise InputError(f"loads = {shorten(self.loads)}: must be a list of loads")
+        for load in self.loads:
+            if not isinstance(load, MovingForce | ElasticPantograph | SlidingPantograph):
+                raise InputError(
+                    f"loads: {shorten(load)}: must be a theory.MovingForce, a theory.ElasticPantograph or a"
+                    " SlidingPantograph"
+                )
 
     def node(self, position: float) -> int:
         """Number of the node at a position [m]. Raises InputError if there is none."""
+        position = number("position", position, "m")
         nearest = int(np.abs(np.asarray(self.x) - position).argmin())
         if abs(self.x[nearest] - position) > 1e-6:
             raise InputError(
@@ -113,7 +147,11 @@ class WireMotion:
     energy: Floats
 
     def at(self, time: float) -> Floats:
-        """[m] shape (nodes,), the deflection at the stored time [s] nearest to the given one."""
+        """[m] shape (nodes,), the deflection at the stored time [s] nearest to the given one.
+
+        Raises InputError for a time outside the motion.
+        """
+        number("time", time, "s", least=float(self.t[0]), most=float(self.t[-1]))
         shape: Floats = self.deflection[np.abs(self.t - time).argmin()]
         return shape
 
@@ -123,8 +161,18 @@ def even_nodes(fixed: Sequence[float] | Floats, element: float) -> Floats:
 
     fixed : [m] ends, supports and whatever needs a node
     element : [m] largest length of an element
+
+    Raises InputError for fewer than two positions, or a wire of more than 200,000 elements.
     """
-    points = np.unique(np.asarray(fixed, dtype=float))
+    points = np.unique(numbers("fixed", fixed))
+    if points.size < 2:
+        raise InputError(f"fixed = {shorten(fixed)}: give at least the wire's two ends")
+    number("element", element, "m", above=0.0)
+    if np.ptp(points) / element > MOST_ELEMENTS:
+        raise InputError(
+            f"element = {element:g} m: {np.ptp(points):g} m take more than {MOST_ELEMENTS:,} of them; use"
+            " longer ones"
+        )
     parts = [
         np.linspace(a, b, max(1, int(np.ceil((b - a) / element - 1e-9))), endpoint=False)
         for a, b in pairwise(points)
@@ -146,7 +194,18 @@ def graded_nodes(
     element : [m] largest length of an element
     kinks : [m] where elements start with the length ``finest``
     growth : ratio of neighbouring lengths
+
+    Raises InputError as :func:`even_nodes`, and for values out of their order.
     """
+    number("element", element, "m", above=0.0)
+    number(
+        "finest", finest, "m", least=element / MOST_ELEMENTS, most=element, remedy="no longer than an element"
+    )
+    number("growth", growth, above=1.0)
+    kinks = numbers("kinks", kinks).ravel()
+    fixed = numbers("fixed", fixed).ravel()
+    if not kinks.size:
+        return even_nodes(fixed, element)
     sizes = finest * growth ** np.arange(max(0, int(np.log(element / finest) / np.log(growth))) + 1)
     around = np.concatenate([[0.0], np.cumsum(sizes)])
     points = np.unique(np.concatenate([fixed, kinks]))

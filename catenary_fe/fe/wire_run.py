@@ -19,11 +19,14 @@ from catenary_fe.fe.wire_build import WireSystem, build_wire, set_initial_veloci
 from catenary_fe.fe.wire_loads import WireLoad, WireTrack, add_load
 from catenary_fe.fe.wire_problem import SlidingPantograph, WireMotion, WireProblem
 from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, number
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
+MOST_STEPS = 10_000_000  # what they record would fill the memory
 
 
+@checked
 def run_wire(
     problem: WireProblem,
     *,
@@ -46,7 +49,7 @@ def run_wire(
     """
     time = time or TimeSettings(step=5e-4, tolerance=1e-6)
     steps = _steps("duration", duration, time.step)
-    every = _steps("interval", interval, time.step) if interval else 1
+    every = 1 if interval is None else _steps("interval", interval, time.step)
     if energy and any(isinstance(load, SlidingPantograph) for load in problem.loads):
         raise InputError("energy: not known for a wire with a sliding pantograph; leave it out")
     system = build_wire(problem)
@@ -78,7 +81,7 @@ def run_wire(
 
 
 def _steps(name: str, value: float, step: float) -> int:
-    count = round(value / step)
+    count = round(number(name, value, "s", above=0.0, most=MOST_STEPS * step) / step)
     if count < 1 or abs(count * step - value) > 1e-6 * step:
         raise InputError(f"{name} = {value!r} s: must be a whole number of steps of {step:g} s")
     return count

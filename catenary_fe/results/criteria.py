@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from operator import ge, gt, le
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
 from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, number, one_of
 from catenary_fe.system.current_collection import (
     DEVIATION_SHARE,
     MEAN_FORCE_TOLERANCE,
@@ -93,6 +94,7 @@ class Criterion:
         return asdict(self) | {"passed": self.passed}
 
 
+@checked
 def criteria_rows(
     run: Run,
     system: PowerSystem,
@@ -111,6 +113,9 @@ def criteria_rows(
 
     Raises InputError for a partial run.
     """
+    one_of("system", system, get_args(PowerSystem))
+    if non_uniformity is not None:
+        number("non_uniformity", non_uniformity, least=0.0, most=1.0)
     if run.partial:
         raise InputError(f"criteria: {run.partial}: only whole runs are judged")
     statistics = run.contact_force_statistics(filter=filter)

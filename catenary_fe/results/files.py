@@ -27,6 +27,8 @@ def written_aside(path: str | Path) -> Iterator[Path]:
     cannot be written.
     """
     path = Path(path)
+    if not path.name:
+        raise InputError(f"{str(path)!r}: no file can have this name; check it")
     aside = path.with_name(f"{ASIDE}{os.getpid()}-{path.name}")
     try:
         yield aside

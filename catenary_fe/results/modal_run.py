@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.results.modes import Modes
+from catenary_fe.system import InputError
+from catenary_fe.system.arguments import checked, numbers, one_of, whole
 from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
@@ -35,15 +37,23 @@ class ModalRun:
     mass_height: Floats
     coordinates: Floats
 
+    @checked
     def uplift(self, x: ArrayLike, every: int = 1) -> Floats:
         """[m], shape (times, points): uplift of the contact wire at positions [m], at every so many times."""
-        uplift: Floats = self.coordinates[::every] @ self.modes.contact.at(x)
+        whole("every", every, least=1)
+        uplift: Floats = np.tensordot(self.coordinates[::every], self.modes.contact.at(x), axes=1)
         return uplift
 
+    @checked
     def error_against(self, signal: ArrayLike, of: str = "contact_force") -> float:
         """Root mean square of the difference to a signal of the same times, over the signal's deviation.
 
-        of : name of the history that is compared
+        of : "contact_force" or "wire_height"
+
+        Raises InputError for a signal of other times, or one that is constant.
         """
-        full = np.asarray(signal, dtype=float)
+        one_of("of", of, ("contact_force", "wire_height"))
+        full = numbers("signal", signal, shape=self.time.shape, each="one value a time")
+        if np.ptp(full) == 0:
+            raise InputError("signal is constant: it has no deviation to compare with")
         return float(np.sqrt(np.mean((getattr(self, of) - full) ** 2)) / full.std())

@@ -126,12 +126,13 @@ class Modes:
     def compliance(self, positions: ArrayLike) -> Floats:
         """[m/N], shape (points,): lift of the contact wire under a unit force there, Σ φ²/ω²."""
         shapes = self.contact.at(positions)
-        compliance: Floats = (shapes**2 / (2 * np.pi * self.frequencies[:, None]) ** 2).sum(axis=0)
+        omega = 2 * np.pi * self.frequencies.reshape(-1, *(1,) * (shapes.ndim - 1))
+        compliance: Floats = (shapes**2 / omega**2).sum(axis=0)
         return compliance
 
     def kind(self, mode: int) -> ModeKind:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
-        if not isinstance(mode, Integral) or not 0 <= int(mode) < len(self):
+        if not isinstance(mode, Integral) or isinstance(mode, bool) or not 0 <= int(mode) < len(self):
             raise InputError(f"mode {shorten(mode)}: {len(self)} modes were computed, numbered from 0")
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)

@@ -20,7 +20,7 @@ from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics
 from catenary_fe.results.wires import WireHistory, wire_histories
 from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
-from catenary_fe.system.arguments import span_numbers, whole
+from catenary_fe.system.arguments import checked, span_numbers, whole
 from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
@@ -237,6 +237,7 @@ class Run:
             "warnings": list(self.warnings),
         }
 
+    @checked
     def save(self, path: str | Path) -> Path:
         """Write all data as netCDF (classic format: any program reads it). Raises InputError if it cannot."""
         sealed = self.data.drop_encoding().assign_attrs({ATTRIBUTE: checksum(self.data)})
@@ -275,6 +276,7 @@ class Run:
         return plot_run_waves(self, ax=ax)
 
 
+@checked
 def load_run(path: str | Path) -> Run:
     """Read a run that was saved, from its file or its folder.
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import inspect
+import os
+from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
 from numbers import Integral, Real
-from typing import Any, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +17,9 @@ from catenary_fe.system.parameters import shorten
 
 Floats = NDArray[np.float64]
 _ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
-_Kind = TypeVar("_Kind")
+_Given = ParamSpec("_Given")
+_Result = TypeVar("_Result")
+_ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
 
 
 def number(
@@ -114,8 +119,78 @@ def one_of(name: str, value: object, choices: Sequence[Any]) -> None:
         raise InputError(f"{name} = {shorten(value)}: must be one of {listed}")
 
 
-def instance(name: str, value: object, kind: type[_Kind], remedy: str) -> _Kind:
-    """The value, if it is of a kind. Raises InputError."""
+def instance(name: str, value: object, kind: type[Any], remedy: str) -> None:
+    """Raises InputError for a value that is not of a kind."""
     if not isinstance(value, kind):
         raise InputError(f"{name} = {shorten(value)}: must be a {kind.__name__}; {remedy}")
-    return value
+
+
+_OBJECTS = {  # by the name of their class: what they are, and where to get one
+    "Catenary": ("a Catenary", "load_catenary reads a file"),
+    "Shape": ("a static shape", "give find_form(catenary)"),
+    "Run": ("a run", "simulate makes one, load_run reads one"),
+    "Modes": ("modes of a line", "give solve_modes(shape)"),
+    "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
+    "TimeSettings": ("TimeSettings", "give TimeSettings(step=...), or leave it out"),
+    "Wire": ("a Wire", "library.wire(name, tension=...) gives one"),
+    "Support": ("a Support", "give Support(...)"),
+    "SteadyArm": ("a SteadyArm", "give SteadyArm(stiffness=...) or SteadyArm(length=...)"),
+    "Pantograph": ("a Pantograph", "such as library.pantograph('DSA250')"),
+    "WireProblem": ("a WireProblem", "give WireProblem(wire=..., x=...)"),
+}
+_UNIONS = {"AnyPantograph": ("Pantograph", "ElasticPantograph")}
+_PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
+    "float": ("a number", lambda v: isinstance(v, Real) and not isinstance(v, bool | np.bool_)),
+    "int": ("a whole number", lambda v: isinstance(v, Integral) and not isinstance(v, bool)),
+    "bool": ("true or false", lambda v: isinstance(v, bool | np.bool_)),
+    "str": ("a text", lambda v: isinstance(v, str)),
+    "Path": ("a path", lambda v: isinstance(v, os.PathLike)),
+    "Progress": ("a function", callable),
+    "Callable[[float], None]": ("a function", callable),
+}
+_NUMBERS = {"ArrayLike", "Floats", "NDArray[np.float64]", "Sequence[float]"}
+
+
+def checked(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+    """Refuse arguments that are not what the annotations say, before the function meets them.
+
+    Of annotations that are not known here, the function itself must check the values. Raises InputError.
+    """
+    signature = inspect.signature(function)
+    kinds = {
+        name: str(parameter.annotation).split(" | ")
+        for name, parameter in signature.parameters.items()
+        if parameter.annotation is not parameter.empty
+    }
+
+    @wraps(function)
+    def call(*args: _Given.args, **kwargs: _Given.kwargs) -> _Result:
+        for name, value in signature.bind(*args, **kwargs).arguments.items():
+            if name in kinds and not (value is None and "None" in kinds[name]):
+                _check_kind(name, value, kinds[name])
+        return function(*args, **kwargs)
+
+    return call
+
+
+def _check_kind(name: str, value: object, kinds: Sequence[str]) -> None:
+    rules, remedy = [], ""
+    for kind in kinds:
+        if kind in _NUMBERS:
+            numbers(name, value)
+            return
+        if kind in _PLAIN:
+            rule, holds = _PLAIN[kind]
+            if holds(value):
+                return
+            rules.append(rule)
+            continue
+        for owner in _UNIONS.get(kind, (kind,)):
+            if any(base.__name__ == owner for base in type(value).__mro__):
+                return
+            if owner in _OBJECTS:
+                rules.append(_OBJECTS[owner][0])
+                remedy = f"; {_OBJECTS[owner][1]}"
+            elif kind not in _UNIONS and kind != "None":
+                return
+    raise InputError(f"{name} = {shorten(value)}: must be {' or '.join(rules)}{remedy}")

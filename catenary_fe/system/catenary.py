@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from catenary_fe.system.arguments import numbers
+from catenary_fe.system.arguments import checked, number, numbers, whole
 from catenary_fe.system.catenary_rules import catenary_faults
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.parameters import (
@@ -102,6 +102,7 @@ class Catenary(Parameters):
         return self
 
     @classmethod
+    @checked
     def regular(
         cls,
         *,
@@ -128,8 +129,15 @@ class Catenary(Parameters):
 
         Raises InputError where a value breaks a rule.
         """
-        span = Span(length=span_length, droppers=tuple(droppers), pre_sag=pre_sag, curve_radius=curve_radius)
+        whole("spans", spans, least=1, most=10_000)
+        number("stagger", stagger, "m")
+        span = Span(length=span_length, droppers=droppers, pre_sag=pre_sag, curve_radius=curve_radius)
         supports = (support,) * (spans + 1)
+        if stagger and support.stagger:
+            raise InputError(
+                f"stagger = {stagger:g} m, to alternating sides, and support.stagger = {support.stagger:g} m:"
+                " give one of them"
+            )
         if stagger:
             supports = tuple(s.replace(stagger=stagger * (-1) ** i) for i, s in enumerate(supports))
         return cls(
@@ -233,7 +241,8 @@ class Catenary(Parameters):
         )
 
     def has_stitch_wire(self, support: int) -> bool:
-        """Whether one hangs at the support of this number, from 0."""
+        """Whether one hangs at the support of this number, from 0. Raises InputError for an absent one."""
+        whole("support", support, least=0, most=len(self.supports) - 1)
         inside = 0 < support < len(self.supports) - 1
         return bool(self.stitch_wire and inside and self.supports[support].stitch_wire)
 

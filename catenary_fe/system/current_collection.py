@@ -6,7 +6,9 @@ No text of a standard was open to us: limits come from secondary sources, or wer
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
+
+from catenary_fe.system.arguments import number, one_of
 
 PowerSystem = Literal["AC", "DC 3 kV", "DC 1.5 kV"]
 MeanForceRule = Literal["EN 50367 AC", "EN 50367 DC 3 kV", "EN 50367 DC 1.5 kV"]
@@ -87,8 +89,11 @@ def target_mean_force(rule: MeanForceRule, speed: float) -> float:
 
     Source: the AC formula above 200 km/h from a secondary source; the others were recalled, not read. Of the
     DC 1.5 kV formula only the branch above 200 km/h is known here: below it, the same formula is used.
+
+    Raises InputError for another rule, or a speed that is not one.
     """
-    v = _kmh(speed)
+    one_of("rule", rule, get_args(MeanForceRule))
+    v = _kmh(number("speed", speed, "m/s", least=0.0))
     curves = _MEAN_FORCE[_SYSTEM_OF[rule], "maximum"]
     return next((c for c in curves if v > c.above), curves[-1]).at(v)
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from catenary_fe.system import library
+from catenary_fe.system.arguments import checked
 from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
@@ -267,6 +268,7 @@ class LayoutFile(Parameters):
         )
 
 
+@checked
 def load_catenary(path: str | Path) -> Catenary:
     """Read a layout file (TOML).
 
@@ -302,6 +304,7 @@ def read_layout(path: str | Path) -> dict[str, Any]:
     return _read_toml(Path(path), "layout")
 
 
+@checked
 def load_pantograph(name_or_path: str | Path) -> Pantograph:
     """A pantograph from a TOML file, or from the library by its name.
 

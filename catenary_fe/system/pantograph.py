@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import field_validator, model_validator
 
+from catenary_fe.system.arguments import number
 from catenary_fe.system.current_collection import MeanForceRule, target_mean_force
 from catenary_fe.system.parameters import (
     NonEmpty,
@@ -39,7 +40,8 @@ class AerodynamicForce(Parameters):
     """[N s/m] b, times the speed in m/s"""
 
     def at(self, speed: float) -> float:
-        """[N] at a speed in m/s."""
+        """[N] at a speed in m/s. Raises InputError for what is none."""
+        speed = number("speed", speed, "m/s", least=0.0)
         return self.quadratic * speed**2 + self.linear * speed
 
 
@@ -171,7 +173,8 @@ class ElasticPantograph(Parameters):
         return self
 
     def contact_force(self, elevation: float) -> float:
-        """[N] on a wire at an elevation [m] above its nominal height."""
+        """[N] on a wire at an elevation [m] above its nominal height. Raises InputError for what is none."""
+        elevation = number("elevation", elevation, "m")
         force, stiffness = self.tangent(elevation)
         return max(0.0, force - stiffness * elevation)
 

@@ -66,10 +66,14 @@ class _ReadableErrors(ModelMetaclass):
     """Catches pydantic's report where an object is made by hand; nested ones keep their place in it."""
 
     def __call__(cls, *args: Any, **data: Any) -> Any:  # noqa: N805 a metaclass
+        model = cast(type[BaseModel], cls)
+        if args:
+            names = ", ".join(f"{name}=..." for name in list(model.model_fields)[:2])
+            raise InputError(f"{cls.__name__}({shorten(args[0])}): give its values by name: {names}")
         try:
-            return super().__call__(*args, **data)
+            return super().__call__(**data)
         except ValidationError as error:
-            raise InputError(*problem_lines(error, cast(type[BaseModel], cls))) from None
+            raise InputError(*problem_lines(error, model)) from None
 
 
 class Parameters(BaseModel, metaclass=_ReadableErrors):

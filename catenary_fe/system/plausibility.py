@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
+from catenary_fe.system.arguments import checked
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.pantograph import AnyPantograph, ElasticPantograph
 from catenary_fe.system.parameters import Parameters
@@ -51,6 +52,7 @@ _ARM: dict[str, Range] = {
 }
 
 
+@checked
 def layout_warnings(catenary: Catenary) -> list[str]:
     """What looks wrong in a layout, though no rule forbids it; each value is told once."""
     found: dict[tuple[type, str], str] = {}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from catenary_fe.results import Run
 from catenary_fe.results.files import written_aside
 from catenary_fe.system import InputError
-from catenary_fe.system.arguments import number, span_numbers, whole
+from catenary_fe.system.arguments import checked, number, span_numbers, whole
 from catenary_fe.views.scene import Scene, scene
 from catenary_fe.views.style import (
     DROPPER,
@@ -35,6 +35,7 @@ _SIZE, _DPI = (10.0, 5.4), 96  # [in], dots per inch: even numbers of pixels, wh
 _BASE = 0.3  # [m] of room below the lowest and above the highest thing drawn
 
 
+@checked
 def film(
     run: Run,
     path: str | Path,

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.system import Catenary
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.lines import Line, draw_lines, hanging_lines, sketched_lines, upper_wires
 from catenary_fe.views.stretch import Stretch, draw_line, evaluated_pair, mark_evaluated
 from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row
@@ -17,6 +18,7 @@ from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
 
 
+@checked
 def plot_layout(
     catenary: Catenary,
     shape: Shape | None = None,

@@ -6,9 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, distinct, finish, mark_supports, new_axes
 
 
+@checked
 def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     """Both wires in one eigenform (mode numbered from 0), each about its own line, droppers between them.
 
@@ -49,6 +51,7 @@ def _drawn(wire: WireShapes, mode: int, sideways: bool) -> np.ndarray:
     return np.asarray(shapes[mode])
 
 
+@checked
 def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
     """How many modes lie below a frequency, by what they are: clusters are steps."""
     ax = new_axes(ax, (10.0, 3.6))

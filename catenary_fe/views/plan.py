@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.system import AnyPantograph, Panhead, Pantograph
+from catenary_fe.system import AnyPantograph, Panhead, Pantograph, arguments
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.lines import draw_lines, hanging_lines
 from catenary_fe.views.stretch import Stretch, draw_line, mark_evaluated
 from catenary_fe.views.style import (
@@ -25,6 +26,7 @@ _CURVE = "#7b4fa3"
 _HEAD = "#dfe7ec"
 
 
+@checked
 def plot_plan(
     shape: Shape, *, spans: Sequence[int] | None = None, head_width: float = 1.2, ax: Axes | None = None
 ) -> Axes:
@@ -35,6 +37,7 @@ def plot_plan(
 
     Raises InputError for spans that the line does not have.
     """
+    arguments.number("head_width", head_width, "m", above=0.0)
 
     def draw(ax: Axes, part: Stretch) -> None:
         _draw(ax, part, shape, head_width)

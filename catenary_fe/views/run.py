@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from catenary_fe.results import ForceStatistics, Run
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import (
     DROPPER,
     OTHERS,
@@ -29,6 +30,7 @@ Floats = NDArray[np.float64]
 _NAMED = 12  # supports that a legend has room for
 
 
+@checked
 def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
@@ -79,6 +81,7 @@ def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: st
         )  # fmt: skip
 
 
+@checked
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour.
 
@@ -120,6 +123,7 @@ def _uplift_bars(ax: Axes, largest: Floats, colours: dict[int, str]) -> None:
     ax.grid(visible=False, axis="x")
 
 
+@checked
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     """Static, largest and smallest force of each dropper; those that went slack are marked."""
     ax = new_axes(ax)
@@ -143,6 +147,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@checked
 def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
     """Work on the whole system, what its dampers took, what it has stored, and what is missing of that.
 

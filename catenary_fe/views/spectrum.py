@@ -7,9 +7,11 @@ from matplotlib.axes import Axes
 
 from catenary_fe.results import Run, spectrum
 from catenary_fe.results.signal import CUT_OFF
+from catenary_fe.system.arguments import checked, number
 from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed
 
 
+@checked
 def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | None = None) -> Axes:
     """Amplitudes of the unfiltered contact force while the pantographs are in the evaluated spans.
 
@@ -17,6 +19,7 @@ def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | No
 
     Marked are the frequencies at which the train passes spans and droppers, by their mean distances.
     """
+    number("up_to", up_to, "Hz", above=0.0)
     ax = new_axes(ax)
     for i, name in enumerate(run.data["pantograph"].values):
         force = run.data["contact_force"].values[i][run.window(i)]

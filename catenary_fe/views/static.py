@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Elasticity
+from catenary_fe.system.arguments import checked
 from catenary_fe.views.stretch import Stretch, evaluated_pair, mark_detail, mark_evaluated, stretch
 from catenary_fe.views.style import (
     CONTACT,
@@ -27,6 +28,7 @@ from catenary_fe.views.style import (
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
+@checked
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions below it.
 

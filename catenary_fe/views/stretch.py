@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary
+from catenary_fe.system.arguments import span_numbers
 from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, runs
 
 Floats = NDArray[np.float64]
@@ -87,11 +88,8 @@ def stretch(catenary: Catenary, spans: Sequence[int] | None = None) -> Stretch:
     Raises InputError for spans that the line does not have.
     """
     count = len(catenary.spans)
-    if spans is None or not len(spans):
-        return Stretch(catenary, 1, count)
-    if not (min(spans) >= 1 and max(spans) <= count):
-        raise InputError(f"spans {list(spans)}: the line has spans 1 to {count}")
-    return Stretch(catenary, int(min(spans)), int(max(spans)))
+    numbers = span_numbers(spans, count, range(1, count + 1))
+    return Stretch(catenary, min(numbers), max(numbers))
 
 
 def evaluated_pair(catenary: Catenary, among: Sequence[int] = ()) -> Stretch:

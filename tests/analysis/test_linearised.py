@@ -2,12 +2,15 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import catenary_fe as cf
 from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
+
+CASES = Path(__file__).parents[1] / "cases"
 
 
 @pytest.fixture(scope="module")
@@ -155,6 +158,19 @@ def test_an_elastic_pantograph(short_shape):
     )
     force = theirs.data["contact_force"].values
     assert ours.data["contact_force"].values == pytest.approx(force, abs=0.05 * np.ptp(force))
+
+
+def test_a_line_without_any_damping():
+    """There is no damping matrix then."""
+    shape = cf.find_form(cf.load_catenary(CASES / "undamped.toml"))
+    pantographs, settings = [cf.library.pantograph("DSA250")], cf.TimeSettings(step=2e-3)
+    first, second = (
+        cf.simulate(shape, pantographs, speed=200 / 3.6, time=settings, method=method)
+        for method in ("nonlinear", "linearised")
+    )
+    (a,), (b,) = first.contact_force_statistics(), second.contact_force_statistics()
+    assert (b.mean, b.std, b.max, b.min) == pytest.approx((a.mean, a.std, a.max, a.min), rel=0.01)
+    assert second.largest_support_uplift() == pytest.approx(first.largest_support_uplift(), rel=0.01)
 
 
 def test_halving_the_step_halves_the_error_twice(short_shape, pantograph):

@@ -135,7 +135,8 @@ def test_at_low_speed_the_wire_follows_its_elasticity(short_shape, pantograph):
         ({"positions": [1.0]}, "must start between"),
         ({"positions": [130.0]}, "inside or behind the evaluated spans"),
         ({"positions": [10.0, 20.0]}, "2 positions for 1 pantographs"),
-        ({"store_wire": 1e-4}, "must be at least the time step"),
+        ({"store_wire": 1e-4}, "must be at least 0.001; that is the time step"),
+        ({"store_wire": 1e9}, "longer than the run"),
     ],
 )
 def test_bad_questions(short_shape, pantograph, change, said):

@@ -1,5 +1,7 @@
 """Slips of those who script: one clear line, not the inside of a program."""
 
+import logging
+
 import numpy as np
 import pytest
 
@@ -48,3 +50,23 @@ def test_beyond_the_wave_speed_no_mesh_is_asked_for(short_shape, pantograph):
     assert not [line for line in said if "refine the mesh" in line]
     (line,) = [line for line in said if "wave speed" in line]
     assert "is 1.010 of the contact wire's wave speed" in line
+
+
+@pytest.mark.parametrize("method", ["linearised", "nonlinear"])
+def test_failed_checks_are_logged_whatever_the_method(short_shape, pantograph, caplog, method):
+    settings = cf.TimeSettings(step=0.01)
+    with caplog.at_level(logging.WARNING, logger="catenary_fe"):
+        run = cf.simulate(short_shape, [pantograph], speed=140 / 3.6, time=settings, method=method)
+    assert "time steps in a period" in run.failed_checks
+    assert [record.getMessage() for record in caplog.records] == list(run.warnings)
+    assert len([w for w in run.warnings if w.startswith("check failed")]) == len(run.failed_checks)
+
+
+def test_modes_that_no_mesh_resolves_are_logged(short, caplog):
+    line = short.replace(spans=short.spans[:2], supports=short.supports[:3], evaluated_spans=None)
+    coarse = cf.MeshSettings(contact_wire_element=6.0, messenger_wire_element=6.0, at_clamps=6.0)
+    shape = cf.find_form(line, coarse)
+    cf.solve_modes(shape, count=2)
+    assert not caplog.records
+    cf.solve_modes(shape, count=40)
+    assert "waves are shorter than two elements" in caplog.text

@@ -175,8 +175,8 @@ def test_waves(capsys, folder, tmp_path):
     [
         (["film", "-o", "run.avi"], "ends with .gif or .mp4"),
         (["film", "-o", "no/run.gif"], "cannot be written: No such file"),
-        (["film", "--slowed", "0", "-o", "run.gif"], "slowed = 0.0: must be above 0"),
-        (["film", "--fps", "100", "-o", "run.gif"], "must be 1 to 50"),
+        (["film", "--slowed", "0", "-o", "run.gif"], "slowed = 0: must be above 0"),
+        (["film", "--fps", "100", "-o", "run.gif"], "must be a whole number from 1 to 50"),
         (["film", "--spans", "8", "-o", "run.gif"], "the line has spans 1 to 3"),
         (["waves", "--spans", "8", "-o", "run.png"], "the line has spans 1 to 3"),
         (["waves", "--wire", "stitch wire", "-o", "run.png"], "stored 'contact wire', 'messenger wire'"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.equilibrium.form_checks import check_links, check_pulls, check_room
+from catenary_fe.equilibrium.form_checks import check_links, check_pulls, check_room, check_stretch
 
 
 @pytest.fixture
@@ -42,6 +42,30 @@ def test_droppers_need_some_room(reference):
     heights[3] = 0.0
     with pytest.raises(cf.InputError, match=r"span 1: dropper 4 at .* lies 0\.000 m below its"):
         check_room(reference, heights)
+
+
+def test_droppers_may_stretch_but_not_from_nothing(reference):
+    distances = np.full(len(reference.droppers), 1.0)
+    tensions = 0.999e5 * distances  # their stiffness is 100 kN/m
+    check_stretch(reference, distances, tensions)
+    tensions[10] = 1.001e5
+    with pytest.raises(cf.InputError) as caught:
+        check_stretch(reference, distances, tensions)
+    assert caught.value.problems == (
+        "span 2: dropper 2 at 10.5 m: stiffness = 100000 N/m is too small: its tension of 100100 N would"
+        " stretch it by 1 m, and it spans 1 m; raise it, look at its unit",
+    )
+
+
+def test_a_dropper_far_too_soft_is_named_by_its_stiffness(reference):
+    soft = [d.replace(stiffness=1e-3) if d.position == 30.0 else d for d in reference.spans[1].droppers]
+    spans = (reference.spans[0], reference.spans[1].replace(droppers=soft), *reference.spans[2:4])
+    line = reference.replace(spans=spans, supports=reference.supports[:5], evaluated_spans=None)
+    with pytest.raises(
+        cf.InputError, match=r"^span 2: dropper 5 at 30 m: stiffness = 0\.001 N/m is too"
+    ) as e:
+        cf.find_form(line)
+    assert len(e.value.problems) == 1
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

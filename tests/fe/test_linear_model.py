@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+import catenary_fe as cf
 from catenary_fe.fe.cable import hermite
 from catenary_fe.fe.linear_model import linear_model
 from catenary_fe.fe.modal import linear_system
+from catenary_fe.fe.nonlinear_model import nonlinear_model
 
 
 @pytest.fixture(scope="module")
@@ -57,3 +59,73 @@ def test_matrices_are_symmetric_and_narrow(reduced):
 def test_tension_coordinates_have_no_mass(reduced):
     assert abs(reduced.mass[reduced.tensions]).max() == 0
     assert (reduced.stiffness.diagonal()[reduced.tensions] < 0).all()
+
+
+def damped(shape, kind, alpha=0.0, beta=0.0, **changes):
+    """Damping matrix of a run's model of a shape; some parts changed that do not move it."""
+    line = shape.catenary.replace(damping=cf.RayleighDamping(alpha=alpha, beta=beta), **changes)
+    if kind == "linear":
+        return linear_model(line, shape.mesh, shape.installation).damping
+    return nonlinear_model(line, shape.mesh, shape.installation).tangent_damping
+
+
+def with_supports(line, **changes):
+    return tuple(s.replace(**changes) for s in line.supports)
+
+
+@pytest.mark.parametrize("kind", ["linear", "nonlinear"])
+def test_rayleigh_damping_leaves_springs_of_supports_and_arms_alone(short_shape, kind):
+    line = short_shape.catenary
+    (arm,) = {s.steady_arm for s in line.supports[1:-1]}
+    before = damped(short_shape, kind, beta=1e-3)
+    stiffer = with_supports(
+        line, messenger_stiffness=3e5, steady_arm=arm.replace(stiffness=9 * arm.stiffness)
+    )
+    after = damped(short_shape, kind, beta=1e-3, supports=stiffer)
+    assert abs(after - before).max() <= 1e-6 * abs(before).max()
+    own = with_supports(line, messenger_damping=50.0, steady_arm=arm.replace(damping=7.0))
+    more = (damped(short_shape, kind, beta=1e-3, supports=own) - before).diagonal()
+    assert sorted(more[more > 1e-3]) == pytest.approx([7.0] * 3 + [50.0] * 3, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["linear", "nonlinear"])
+def test_rayleigh_damping_of_a_dropper_is_beta_times_its_stiffness(short_shape, kind):
+    """Besides that of the wires, which its own damping leaves as it is."""
+    line, beta, k, own = short_shape.catenary, 1e-3, 1e5, 30.0
+    assert {d.stiffness for d in line.droppers} == {k}
+    spans = tuple(s.replace(droppers=tuple(d.replace(damping=own) for d in s.droppers)) for s in line.spans)
+    droppers = damped(short_shape, kind, spans=spans)  # of own dampers alone
+    more = damped(short_shape, kind, beta=beta, spans=spans) - damped(short_shape, kind, beta=beta)
+    assert abs(more - droppers).max() <= 1e-6 * abs(droppers).max()
+    wires = damped(short_shape, kind, beta=beta) - beta * k / own * droppers
+    model = linear_model(line, short_shape.mesh, short_shape.installation)
+    if kind == "linear":  # what is left is that of the wires: EA, EI and tension, no dropper in it
+        rows = model.dropper_rows
+        left = model.stiffness - rows.T @ (k * rows)
+        up = np.zeros(model.size)
+        up[model.heights[model.heights >= 0]] = 1.0
+        assert up @ wires @ up == pytest.approx(beta * (up @ left @ up - springs(line)), rel=1e-3)
+
+
+def springs(line):
+    """[N/m], vertical, that hold the line where all of it is raised: of supports and arms."""
+    return sum(s.messenger_stiffness + s.steady_arm.stiffness for s in line.supports[1:-1])
+
+
+@pytest.mark.parametrize("kind", ["linear", "nonlinear"])
+def test_mass_damping_is_of_the_wires_alone(short_shape, kind):
+    line = short_shape.catenary
+    heavy = tuple(
+        s.replace(
+            droppers=tuple(d.replace(messenger_clamp_mass=5.0, mass_per_length=2.0) for d in s.droppers)
+        )
+        for s in line.spans
+    )
+    before, after = (damped(short_shape, kind, alpha=0.1, spans=spans) for spans in (line.spans, heavy))
+    assert abs(before - after).max() <= 1e-9 * abs(before).max()
+    wires = (line.contact_wire.mass_per_length + line.messenger_wire.mass_per_length) * line.length
+    if kind == "linear":
+        model = linear_model(line, short_shape.mesh, short_shape.installation)
+        up = np.zeros(model.size)
+        up[model.heights[model.heights >= 0]] = 1.0
+        assert up @ before @ up == pytest.approx(0.1 * wires, rel=0.02)  # without the ends, which are held

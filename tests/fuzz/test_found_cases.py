@@ -78,7 +78,7 @@ def test_elements_of_a_millimetre(reference):
 
 
 def test_steps_that_would_fill_the_memory():
-    with pytest.raises(cf.InputError, match=r"must lie between 1e-06 and 0\.02 s"):
+    with pytest.raises(cf.InputError, match=r"must be at least 1e-06 and at most 0\.02"):
         cf.TimeSettings(step=SHORTEST_STEP / 2)
 
 

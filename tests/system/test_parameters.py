@@ -139,7 +139,7 @@ def test_zero_spans_are_refused(reference):
         messenger_wire=reference.messenger_wire,
         support=reference.supports[0],
     )
-    assert line == "spans: is empty; at least one is needed"
+    assert line == "spans = 0: must be a whole number from 1 to 10000"
 
 
 def test_regular_spans_equal_the_reference_layout(reference):

@@ -9,6 +9,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+from catenary_fe.system.arguments import checked, number, one_of, whole
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.pantograph import Pantograph
@@ -46,6 +47,7 @@ class Line(Parameters):
     dropper: Dropper | None = None
     """what the droppers have in common, where known (position 0)"""
 
+    @checked
     def catenary(self, *, spans: int = 10, dropper_spacing: float = 6.0, steady_arm: SteadyArm) -> Catenary:
         """A layout of equal spans on this line's wires.
 
@@ -57,6 +59,8 @@ class Line(Parameters):
         Raises InputError where a value breaks a rule. The layouts that come with the sources place droppers
         and arms with more care.
         """
+        whole("spans", spans, least=1, most=10_000)
+        number("dropper_spacing", dropper_spacing, "m", least=0.5)
         count = max(2, round(self.span_length / dropper_spacing))
         gap = self.span_length / count
         common = self.dropper or Dropper(position=0.0)
@@ -80,21 +84,25 @@ class Line(Parameters):
         return StitchWire(**self.stitch_wire.model_dump(), length=self.stitch_wire_length)
 
 
+@checked
 def wire(name: str, *, tension: float) -> Wire:
     """A wire of the library under a tension [N]. Raises InputError with the near names."""
     return Wire(**(wire_record(name) | {"tension": tension}))
 
 
+@checked
 def wire_record(name: str) -> dict[str, Any]:
     """What the library knows of a wire: all fields but the tension. Raises InputError with the near names."""
     return _find("wire", name)
 
 
+@checked
 def pantograph(name: str) -> Pantograph:
     """A pantograph of the library. Raises InputError with the near names."""
     return Pantograph(**_find("pantograph", name))
 
 
+@checked
 def line(name: str) -> Line:
     """A line of the library. Raises InputError with the near names."""
     record = _find("line", name)
@@ -106,8 +114,7 @@ def line(name: str) -> Line:
 
 def names(kind: str) -> list[str]:
     """Names in the library; kind is 'wires', 'pantographs' or 'lines'. Raises InputError for another one."""
-    if kind not in ("wires", "pantographs", "lines"):
-        raise InputError(f"library: kind = {shorten(kind)}: must be 'wires', 'pantographs' or 'lines'")
+    one_of("library: kind", kind, ("wires", "pantographs", "lines"))
     return list(_records(kind))
 
 

@@ -220,11 +220,15 @@ def _line_table(catenary: Catenary) -> Table:
             "droppers",
             f"{_range(counts)} in a span, {_range([d.stiffness / 1e3 for d in catenary.droppers])} kN/m",
         ),
+        ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
         ("contact wire height", f"{catenary.contact_wire_height:g} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_height)} m"),
         ("steady arms", _arms(catenary)),
-        ("damping of the wires", f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s"),
+        (
+            "damping of wires and taut droppers",
+            f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s",
+        ),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_sideways(catenary),
     ]
