@@ -5,14 +5,23 @@ False, or None where no limit is known; ``missed(rows)`` are those that fail, ``
 a table.
 """
 
-from catenary_fe.results.criteria import Criterion, criteria_rows, labels, missed
+from catenary_fe.results.criteria import (
+    Criterion,
+    KeyFigures,
+    criteria_in_words,
+    criteria_rows,
+    excess,
+    judge,
+    labels,
+    missed,
+)
 from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.guards import Check, run_checks
+from catenary_fe.results.guards import Check, checks_in_words, run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
-from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
 from catenary_fe.results.wires import WireHistory
 
 __all__ = [
@@ -20,6 +29,7 @@ __all__ = [
     "Criterion",
     "Elasticity",
     "ForceStatistics",
+    "KeyFigures",
     "ModalRun",
     "ModeKind",
     "Modes",
@@ -27,8 +37,13 @@ __all__ = [
     "WireHistory",
     "WireShapes",
     "band_pass",
+    "checks_in_words",
+    "criteria_in_words",
     "criteria_rows",
+    "excess",
     "force_statistics",
+    "governing",
+    "judge",
     "labels",
     "load_run",
     "low_pass",

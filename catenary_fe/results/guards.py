@@ -7,7 +7,7 @@ is there for every run, loaded ones too. A guard that cannot be judged on a run 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi, sqrt
@@ -111,6 +111,14 @@ def run_checks(run: Run) -> tuple[Check, ...]:
     if not run.reached:  # of a partial run: what its evaluated spans say is not known
         guards = guards[:7]
     return tuple(check for guard in guards for check in guard(run))
+
+
+def checks_in_words(checks: Sequence[Check]) -> str:
+    """How many checks fail, and which."""
+    failed = [check.name for check in checks if not check.passed]
+    if not failed:
+        return f"all {len(checks)} checks passed"
+    return f"{len(failed)} of {len(checks)} checks failed: {', '.join(failed)}"
 
 
 def _lumped(run: Run) -> list[tuple[int, Pantograph]]:

@@ -18,7 +18,7 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     A limit of 0 and an unknown one have no bar: value, limit and verdict stand alone there.
     """
     ax = new_axes(ax, (11.0, 1.2 + 0.32 * len(rows)))
-    shares = [limit_used(row) or 0.0 for row in rows]
+    shares = [row.used or 0.0 for row in rows]
     end = 100 * max([1.0, *shares])
     for i, (row, share) in enumerate(zip(rows, shares, strict=True)):
         ax.barh(i, 100 * share, height=0.62, color=_COLOURS[row.verdict])
@@ -35,10 +35,3 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     finish(ax, "share of the limit that is used (%)", "", heading)
     ax.grid(visible=False, axis="y")
     return ax
-
-
-def limit_used(row: Criterion) -> float | None:
-    """Value over limit, or limit over value where the limit is a lower one; None where that says nothing."""
-    if row.limit is None or row.limit <= 0 or row.value <= 0:
-        return None
-    return row.value / row.limit if row.relation == "at most" else row.limit / row.value

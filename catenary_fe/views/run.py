@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results import Run
+from catenary_fe.results.signal import FilterKind
 from catenary_fe.views.style import (
     DROPPER,
     PANTOGRAPHS,
@@ -18,16 +19,16 @@ from catenary_fe.views.style import (
 )
 
 
-def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
+def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
     supports = run.data["support_position"].values
     mark_supports(ax, supports)
     spans = run.evaluated_spans
     ax.axvspan(supports[min(spans) - 1], supports[max(spans)], color="#f3efe2", label="evaluated spans")
-    filtered = run.filtered_contact_force()
+    filtered = run.filtered_contact_force(filter)
     single = filtered.shape[0] == 1
-    figures, names = run.figures(), run.data["pantograph"].values
+    figures, names = run.figures(filter), run.data["pantograph"].values
     for i, statistics in enumerate(figures):
         colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
         x = run.data["position"].values[i]
@@ -65,7 +66,7 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour."""
     ax = new_axes(ax)
     uplift = 1e3 * run.data["support_uplift"].values
-    evaluated = sorted({s for n in run.evaluated_spans for s in (n - 1, n)})
+    evaluated = [number - 1 for number in run.uplift_by_support()]
     for i, values in enumerate(uplift[1:-1], start=1):
         if i not in evaluated:
             ax.plot(run.time, values, color="#c9c9c9", linewidth=0.8)
@@ -90,10 +91,10 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     low, high = forces.min(axis=1), forces.max(axis=1)
     ax.vlines(x, low, high, color=DROPPER, linewidth=2.0, label="range during the run")
     ax.plot(x, forces[:, 0], ".", color=PANTOGRAPHS[0], markersize=6, label="at the start")
-    slack = low <= 0
-    if slack.any():
+    slack = run.slackened_droppers
+    if slack.size:
         share = np.mean(forces[slack] <= 0) * 100
-        name = f"went slack: {slack.sum()} of {x.size}, {share:.1f} % of the time"
+        name = f"went slack: {slack.size} of {x.size}, {share:.1f} % of the time"
         ax.plot(x[slack], low[slack], "v", color=PANTOGRAPHS[1], markersize=5, label=name)
     ax.legend(loc="upper right", fontsize=8, ncols=2, framealpha=0.9)
     headroom(ax, 0.18)

@@ -112,8 +112,7 @@ class Line(NamedTuple):
     rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
     yielding : columns of the inverse for the droppers
     links, bows : steady arms, inclined elements
-    supports, heights, tensions, rest : coordinates of heights at supports and of all nodes, of tensions, and
-        the tensions at rest
+    supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
     """
 
     first: Integers
@@ -134,7 +133,6 @@ class Line(NamedTuple):
     supports: Integers
     heights: Integers
     tensions: Integers
-    rest: Floats
 
 
 class Wires(NamedTuple):
@@ -193,7 +191,7 @@ class Records(NamedTuple):
     masses : (lanes, pantographs, coordinates, steps + 1)
     droppers : (lanes, droppers, steps + 1)
     supports : (lanes, contact wires * supports, steps + 1), uplift
-    share : (lanes, steps + 1), largest change of tension over the wire's tension
+    change, changed : (lanes, gaps), [N] largest change of a gap's tension, and the step at whose end it is
     slack : (lanes, steps + 1), [m] largest shortening of a slack dropper
     wire : (lanes, shapes, nodes of all wires), uplift at every ``every``-th step, 0: never
     """
@@ -203,7 +201,8 @@ class Records(NamedTuple):
     masses: Floats
     droppers: Floats
     supports: Floats
-    share: Floats
+    change: Floats
+    changed: Integers
     slack: Floats
     wire: Floats
     every: int

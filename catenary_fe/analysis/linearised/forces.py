@@ -366,12 +366,12 @@ def record(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, t
         i = line.supports[s]
         if i >= 0:
             to.supports[c, s, n] = wires.q[i, c] + scheme.b * wires.x[i, c]
-    share = 0.0
     for s in range(line.tensions.size):
         i = line.tensions[s]
-        work.tension[c, s] = wires.q[i, c] + scheme.b * wires.x[i, c]
-        share = max(share, abs(work.tension[c, s]) / line.rest[s])
-    to.share[c, n] = share
+        tension = wires.q[i, c] + scheme.b * wires.x[i, c]
+        work.tension[c, s] = tension
+        if abs(tension) > to.change[c, s]:
+            to.change[c, s], to.changed[c, s] = abs(tension), n
     if to.every > 0 and n % to.every == 0:
         for node in range(line.heights.size):
             i = line.heights[node]

@@ -167,7 +167,7 @@ class LinearisedCatenary:
                 f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite, or did not"
                 " settle in a step; look for stiffnesses far from usual values, or use a smaller time step"
             )
-        warnings = [*case.warnings, *_doubts(journey.time, *lanes.doubts(lane, job.steps))]
+        warnings = [*case.warnings, *_doubts(self, lanes, lane, journey, job.steps)]
         run = make_run(
             self._shape, case.pantographs, job.uplifts.uplifts, case.speed, self._time, journey, warnings,
             method="linearised",

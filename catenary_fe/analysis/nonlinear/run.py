@@ -114,7 +114,7 @@ class NonlinearCatenary:
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:
         stations = self._stations
-        counts = self._system.droppers.k.size, stations.supports.size, stations.heights.size
+        counts = self._system.droppers.k.size, stations.supports.size, stations.heights.size, 0
         records = make_records(1, sizes, counts, self._every)
         records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
         if self._every:

@@ -48,7 +48,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
 def uplift_chart(run: Run) -> dict[str, Any]:
     """Uplift at the supports against time, in mm."""
     every = _stride(run.time.size, _POINTS // 4)
-    evaluated = sorted({s for n in run.evaluated_spans for s in (n - 1, n)})
+    evaluated = [number - 1 for number in run.uplift_by_support()]
     uplift = 1e3 * run.data["support_uplift"].values[:, ::every]
     inner = range(1, uplift.shape[0] - 1)
     shown = [i for i in inner if i in evaluated or len(inner) <= _SUPPORTS]
