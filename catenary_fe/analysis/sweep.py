@@ -37,7 +37,7 @@ LOST = "lost"  # marks the record of a case that was killed: it is not kept
 _log = logging.getLogger(__name__)
 
 
-RESULTS = 2  # rises when the same inputs give other results: cases that were kept are then computed anew
+RESULTS = 3  # rises when the same inputs give other results: cases that were kept are then computed anew
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -366,9 +366,6 @@ def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
         del summary[key]  # a table is the same whenever and wherever it was computed
     for i, pantograph in enumerate(summary["pantographs"]):
         pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
-    force = result.data["dropper_force"].values
-    summary["slack_droppers"] = int((force <= 0).any(axis=1).sum())
-    summary["largest_dropper_force_N"] = float(force.max(initial=0.0))
     return {"summary": summary}
 
 

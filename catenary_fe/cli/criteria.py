@@ -56,10 +56,11 @@ def kept_evaluation(folder: str | Path) -> tuple[FilterKind, PowerSystem | None]
     """
     place = Path(folder) if Path(folder).is_dir() else Path(folder).parent
     said = read_record(place / "summary.json")
-    kind, system = said.get("filter"), said.get("criteria_system")
+    kinds: tuple[FilterKind, ...] = get_args(FilterKind)
+    systems: tuple[PowerSystem, ...] = get_args(PowerSystem)
     return (
-        kind if kind in get_args(FilterKind) else "causal",
-        system if system in get_args(PowerSystem) else None,
+        next((kind for kind in kinds if kind == said.get("filter")), "causal"),
+        next((system for system in systems if system == said.get("criteria_system")), None),
     )
 
 

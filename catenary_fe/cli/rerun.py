@@ -48,7 +48,9 @@ def rerun(folder: str, output: str | None, as_json: bool, quiet: bool) -> int:
         if target:
             for file in (f for pattern in INPUTS for f in Path(folder).glob(pattern)):
                 shutil.copyfile(file, target.path / file.name)
-            again = found.again if run.elasticity is None else with_elasticity(found.again, found.shape, quiet)
+            again = (
+                found.again if run.elasticity is None else with_elasticity(found.again, found.shape, quiet)
+            )
             summary, rows = evaluated(again, *kept_evaluation(folder))
             write_run(target, found.shape, again, summary, rows)
     result = {

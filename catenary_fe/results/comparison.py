@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from catenary_fe.results.guards import FAILED
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import InputError
@@ -74,14 +75,16 @@ def key_figures(runs: Sequence[Run], labels: Sequence[str], filter: FilterKind =
         pantographs = summary["pantographs"]
         for statistics in pantographs:
             values = {key: statistics.get(key, summary.get(key)) for key in QUANTITIES}
-            columns.append(Column(f"{label}: {statistics['name']}" if len(pantographs) > 1 else label, values))
+            columns.append(
+                Column(f"{label}: {statistics['name']}" if len(pantographs) > 1 else label, values)
+            )
     return columns
 
 
 def failed_checks(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
     """One line for each check that a run fails."""
     return [
-        f"{label}: check failed: {check}"
+        f"{label}: {FAILED}{check}"
         for run, label in zip(runs, labels, strict=True)
         for check in run.checks
         if not check.passed

@@ -63,7 +63,7 @@ class Criterion:
 
     @property
     def used(self) -> float | None:
-        """Value over limit, or limit over value where the limit is a lower one; None where that says nothing."""
+        """Value over limit, or limit over value where that is a lower one; None where it says nothing."""
         if self.limit is None or self.limit <= 0 or self.value <= 0:
             return None
         return self.value / self.limit if self.relation == "at most" else self.limit / self.value

@@ -38,6 +38,7 @@ HANN_WIDTH = 1.5  # by which a Hann window widens a line of the spectrum
 REFLECTED = 0.1  # of the uplift at the supports
 SPREAD = 0.2  # of the standard deviation
 SLACK = 0.1  # of the droppers' time
+FAILED = "check failed: "  # begins the warning of a check that fails
 
 
 @dataclass(frozen=True)
@@ -230,10 +231,17 @@ def _tension_drift(run: Run) -> Iterator[Check]:
     keeps, change by 6 % and are not judged.
     """
     if "tension_change" in run.data:
-        wires = [i for i, name in enumerate(run.data["wire"].values) if not str(name).startswith("stitch")]
-        value = 100 * float(run.data["tension_change"].values[wires].max())
-        text = "change of a wire's tension since the start; look for what holds it along the track"
-        yield Check("tension drift", value, "%", "at most", 100 * DRIFT, text)
+        names = [str(name) for name in run.data["wire"].values if not str(name).startswith("stitch")]
+        changes = run.data["tension_change"].values[: len(names)]
+        wire, reading = np.unravel_index(changes.argmax(), changes.shape)
+        span = int(run.data["tension_span"].values[wire, reading])
+        text = (
+            f"change of the {names[wire].replace('_', ' ')}'s tension in span {span} since the start, at"
+            f" {float(run.data['tension_time'].values[reading]):.2f} s; look for what holds the wire along"
+            " the track there"
+        )
+        share = 100 * float(changes[wire, reading])
+        yield Check("tension drift", share, "%", "at most", 100 * DRIFT, text)
 
 
 def _mesh(run: Run) -> dict[str, float]:

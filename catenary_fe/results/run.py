@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from catenary_fe.results.checksum import ATTRIBUTE, checksum
 from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.files import written_aside
-from catenary_fe.results.guards import Check, run_checks
+from catenary_fe.results.guards import FAILED, Check, run_checks
 from catenary_fe.results.partial import Partial
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
-FORMAT = "catenary_fe run 1"
+FORMAT = "catenary_fe run 2"
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Run:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the program warned of before the run, and the checks that it failed."""
-        failed = [f"check failed: {check}" for check in self.checks if not check.passed]
+        failed = [f"{FAILED}{check}" for check in self.checks if not check.passed]
         partial = [str(self.partial)] if self.partial else []
         return (*partial, *json.loads(self.data.attrs["warnings"]), *failed)
 
@@ -128,7 +128,7 @@ class Run:
         return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), inside)
 
     def with_elasticity(self, curve: Elasticity) -> Run:
-        """The run with the line's elasticity beside its histories: whoever shows or judges it reads it there."""
+        """The run with the line's elasticity in its data: who shows or judges it reads it there."""
         words = {"units": "m", "long_name": "uplift of the contact wire under a static force"}
         place = ("elasticity_position", curve.position, {"units": "m", "long_name": "place of that force"})
         variable = ("elasticity_position", curve.uplift, words | {"force": curve.force})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -72,7 +72,7 @@ class ForceStatistics:
     @classmethod
     def from_dict(cls, record: Mapping[str, Any], filter: FilterKind) -> ForceStatistics:
         """What :meth:`as_dict` gave, other entries left out; ``filter``: which low-pass was used."""
-        values = {
+        values: dict[str, Any] = {
             own: record[name] if factor == 1 else record[name] / factor
             for name, (own, factor) in _SHOWN.items()
         }
@@ -81,9 +81,7 @@ class ForceStatistics:
     @classmethod
     def none_as_dict(cls, pantograph: str) -> dict[str, float | str | None]:
         """As :meth:`as_dict`, with nothing in it: of spans that were not passed."""
-        names = [f.name for f in fields(cls) if f.name not in ("pantograph", "filter")]
-        empty = cls(pantograph=pantograph, filter="causal", **dict.fromkeys(names, float("nan")))
-        return dict.fromkeys(empty.as_dict()) | {"name": pantograph}
+        return {"name": pantograph, **dict.fromkeys(_SHOWN)}
 
     def __str__(self) -> str:
         return (
@@ -138,8 +136,8 @@ def governing(
 
     excess : by name, how many times its limit the criterion is that a pantograph misses by most
 
-    It is the one that misses a limit by most. Where none misses any, it is the one whose standard deviation is
-    the largest share of its mean force, which every power system limits.
+    It is the one that misses a limit by most; where none misses any, the one whose standard deviation is the
+    largest share of its mean force, which every power system limits.
     """
     known = [s for s in figures if s]
     if not known:

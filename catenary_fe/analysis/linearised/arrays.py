@@ -192,7 +192,7 @@ class Records(NamedTuple):
     droppers : (lanes, droppers, steps + 1)
     supports : (lanes, contact wires * supports, steps + 1), uplift
     change, changed : (lanes, gaps), [N] largest change of a gap's tension, and the step at whose end it is
-    slack : (lanes, steps + 1), [m] largest shortening of a slack dropper
+    shortening, shortened : (lanes, droppers), [m] largest one of each dropper while slack, and likewise
     wire : (lanes, shapes, nodes of all wires), uplift at every ``every``-th step, 0: never
     """
 
@@ -203,7 +203,8 @@ class Records(NamedTuple):
     supports: Floats
     change: Floats
     changed: Integers
-    slack: Floats
+    shortening: Floats
+    shortened: Integers
     wire: Floats
     every: int
 

@@ -109,12 +109,12 @@ class Lanes:
         return read_journey(self.records, self.heads, lane, start, steps, self._setup.scheme.h, shape)
 
     def tension_changes(self, lane: int) -> tuple[Floats, Integers]:
-        """[N], shape (gaps,): the largest change of each gap's tension, and the steps at whose ends they are."""
+        """[N], shape (gaps,): largest change of each gap's tension, and the steps at whose ends they are."""
         return self.records.change[lane], self.records.changed[lane]
 
-    def shortenings(self, lane: int, steps: int) -> Floats:
-        """[m], shape (steps + 1,): the largest shortening of a slack dropper."""
-        return self.records.slack[lane, : steps + 1]
+    def shortenings(self, lane: int) -> tuple[Floats, Integers]:
+        """[m], shape (droppers,): largest shortening of each dropper while slack, and likewise the steps."""
+        return self.records.shortening[lane], self.records.shortened[lane]
 
     def free(self) -> list[int]:
         """Lanes whose run is over."""

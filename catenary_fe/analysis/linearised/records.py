@@ -74,7 +74,8 @@ def make_records(lanes: int, sizes: Sizes, counts: tuple[int, int, int, int], ev
         supports=np.zeros((lanes, supports, t)),
         change=np.zeros((lanes, gaps)),
         changed=np.zeros((lanes, gaps), dtype=np.int64),
-        slack=np.zeros((lanes, t)),
+        shortening=np.zeros((lanes, droppers)),
+        shortened=np.zeros((lanes, droppers), dtype=np.int64),
         wire=np.zeros((lanes, sizes.shapes, nodes)),
         every=every,
     )
@@ -114,7 +115,8 @@ def load_heads(heads: Heads, records: Records, lane: int, scheme: Scheme, start:
             j += 1
     heads.speed[lane], heads.step[lane], heads.last[lane] = start.speed, 0, steps
     records.droppers[lane, :, 0] = start.dropper_force
-    records.change[lane], records.changed[lane], records.slack[lane, 0] = 0.0, 0, 0.0
+    for found in (records.change, records.changed, records.shortening, records.shortened):
+        found[lane] = 0
 
 
 def read_journey(

@@ -48,9 +48,9 @@ def figures_table(columns: Sequence[Column]) -> Table:
             continue
         texts = ["–" if value is None else f"{value:.{digits}f}" for value in values]
         if len(values) == 2:
-            first, second = values
-            both = first is not None and second is not None
-            texts.append(f"{round(second - first, digits) + 0.0:+.{digits}f}" if both else "–")
+            known = [value for value in values if value is not None]
+            change = f"{round(known[-1] - known[0], digits) + 0.0:+.{digits}f}"
+            texts.append(change if len(known) == 2 else "–")
         rows.append((name, *texts))
     names = [column.label for column in columns]
     return Table("", ("", *names, *(["difference"] if len(names) == 2 else [])), rows)
