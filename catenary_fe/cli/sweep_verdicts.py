@@ -53,7 +53,7 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
     """The verdict on a case, by what is kept of its run."""
     from catenary_fe.analysis.sweep import BrokenCase
     from catenary_fe.results import ForceStatistics, excess, governing
-    from catenary_fe.results.guards import FAILED
+    from catenary_fe.results.check import FAILED
 
     if isinstance(case, BrokenCase) or "error" in record:
         return Verdict(record["values"], error=record["error"])
@@ -114,7 +114,7 @@ def _named(by_case: Iterable[Sequence[str]]) -> str:
 
 
 def warn_once(verdicts: Sequence[Verdict]) -> None:
-    """Each warning once on standard error, with the number of cases that it is of; of many, the first ones."""
+    """Each warning once on standard error, with the number of its cases; of many, the most frequent ones."""
     counted = Counter(text for v in verdicts for text in dict.fromkeys(v.warnings))
     for text, n in counted.most_common(_MOST):
         say("warning", f"{n} of {len(verdicts)} cases: {text}", "yellow")

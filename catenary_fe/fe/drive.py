@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.contact import MovingContact
 from catenary_fe.fe.energy import EnergyLedger
-from catenary_fe.fe.faults import most_strained, place_of_heads
+from catenary_fe.fe.faults import most_strained, place_of_heads, smaller_steps
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Installation, Model, build_model, dropper_damping
 from catenary_fe.fe.pantograph import PantographItems, add_pantographs
@@ -350,8 +350,9 @@ class _Recorder:
             tension_span=self._tension.spans,
             tension_times=self._tension.times,
             notes=tuple(
-                f"no convergence with the time step after {at:.4f} s: on from there in steps of 1/{parts} of"
-                f" it for {1e3 * STRETCH * trip.time.step:g} ms"
+                smaller_steps(
+                    model.catenary, trip.start + trip.speed * at, at, parts, 1e3 * STRETCH * trip.time.step
+                )
                 for at, parts in self._notes.items()
             ),
         )

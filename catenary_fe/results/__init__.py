@@ -5,6 +5,7 @@ False, or None where no limit is known; ``missed(rows)`` are those that fail, ``
 a table.
 """
 
+from catenary_fe.results.check import Check, checks_in_words
 from catenary_fe.results.criteria import (
     Criterion,
     KeyFigures,
@@ -16,7 +17,7 @@ from catenary_fe.results.criteria import (
     missed,
 )
 from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.guards import Check, checks_in_words, run_checks
+from catenary_fe.results.guards import run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
 from catenary_fe.results.run import Run, load_run

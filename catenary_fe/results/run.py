@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.check import FAILED, Check
 from catenary_fe.results.checksum import ATTRIBUTE, checksum
 from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.files import written_aside
-from catenary_fe.results.guards import FAILED, Check, run_checks
+from catenary_fe.results.guards import run_checks
 from catenary_fe.results.partial import Partial
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
