@@ -120,8 +120,8 @@ def run_warnings(
     first = min(catenary.spans_to_evaluate)
     if first - 1 - reached < RUN_IN:
         found.append(
-            f"the start at {start.max():g} m is only {supports[first - 1] - start.max():g} m before span {first},"
-            f" the first evaluated one; {RUN_IN} spans let the start's transient fade: evaluate later spans, or"
-            " start earlier"
+            f"the start at {start.max():g} m is only {supports[first - 1] - start.max():g} m before span"
+            f" {first}, the first evaluated one; {RUN_IN} spans let the start's transient fade: evaluate"
+            " later spans, or start earlier"
         )
     return found

@@ -87,8 +87,13 @@ def test_penetration_is_of_the_deepest_head():
     depths[0, 0, 700], depths[1, 0, 900] = 0.004, 0.0125
     for pantographs in (TWO, TWO[::-1], (ELASTIC, TWO[0])):
         run = made_run(None, *pantographs, start=(5.0, 5.0), mass_height=HEIGHT + depths)
-        assert check(run, "penetration").value == pytest.approx(12.5)
-        assert not check(run, "penetration").passed
+        found = check(run, "penetration")
+        assert found.value == pytest.approx(12.5)
+        assert not found.passed
+        deepest = run.data["pantograph"].values[-1 if pantographs[0] is ELASTIC else depths.argmax() // 2001]
+        assert found.text.startswith(
+            f"so deep the head of {deepest} goes into the wire at 95.0 m (span 2), under 100 N; raise"
+        )
 
 
 def energies(energy, driven, lost):
@@ -122,15 +127,26 @@ def test_no_work_at_all_is_balanced():
 
 def tensions(by_wire):
     changes = np.array(list(by_wire.values()), dtype=float)
-    return {"tension_change": (("wire", "tension_time"), changes), "wire": ("wire", list(by_wire))}
+    spans = np.broadcast_to(2 + np.arange(len(changes))[:, None], changes.shape)
+    return {
+        "tension_change": (("wire", "tension_time"), changes),
+        "tension_span": (("wire", "tension_time"), spans),
+        "tension_time": ("tension_time", 0.05 * np.arange(changes.shape[1])),
+        "wire": ("wire", list(by_wire)),
+    }
 
 
 def test_tension_drift_is_of_the_wires_that_weights_hold():
     wires = {"contact_wire": [0, 0.004], "messenger_wire": [0.012, 0], "stitch_wire_2": [0, 0.06]}
-    assert check(made_run(extra=tensions(wires)), "tension drift").value == pytest.approx(1.2)
+    drift = check(made_run(extra=tensions(wires)), "tension drift")
+    assert drift.value == pytest.approx(1.2)
+    assert drift.text.startswith(
+        "change of the messenger wire's tension in span 3 since the start, at 0.00 s;"
+    )
     worse = wires | {"contact_wire": [0, 0.031]}
     assert str(check(made_run(extra=tensions(worse)), "tension drift")).startswith(
-        "tension drift = 3.1 %, must be at most 3 %: "
+        "tension drift = 3.1 %, must be at most 3 %: change of the contact wire's tension in span 2 since the"
+        " start, at 0.05 s; "
     )
 
 
