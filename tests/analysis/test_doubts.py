@@ -1,4 +1,4 @@
-"""When a linearised run doubts itself: the rule, the words, and whether both methods agree where it is silent."""
+"""When a linearised run doubts itself: the rule, its words, and that both methods agree elsewhere."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ STEP = 2e-3
 
 @pytest.fixture(scope="module")
 def re330(reference_layout):
-    """Contact wire 27 kN, messenger wire 21 kN, stitch wires 3.5 kN; the first stitch wire is at support 2."""
+    """Contact wire 27 kN, messenger wire 21 kN, stitch wires 3.5 kN, the first of them at support 2."""
     return cf.load_catenary(reference_layout.with_name("re330.toml"))
 
 
@@ -75,7 +75,7 @@ def test_a_dropper_that_shortens_too_far_is_named(re330):
 @pytest.mark.slow
 @pytest.mark.parametrize(("uplift", "doubts"), [(160.0, 0), (250.0, 0), (1000.0, 2)])
 def test_where_it_is_silent_both_methods_agree(re330, uplift, doubts):
-    """σ within 0.5 %, the filtered force within 3 % of it; pushed six times as hard, it is 15 % off."""
+    """σ within 0.5 %, the filtered force within 3 % of it; pushed by 1000 N, it is 15 % off."""
     line = re330.replace(spans=re330.spans[:6], supports=re330.supports[:7], evaluated_spans=(3, 4))
     head = cf.library.pantograph("DSA380").replace(
         mean_force=None, uplift_force=uplift, aerodynamic_force=cf.AerodynamicForce()

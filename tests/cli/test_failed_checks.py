@@ -79,7 +79,7 @@ def test_comparison(capsys, folders, tmp_path):
 
 
 def test_sweep_table(capsys, layout, tmp_path):
-    """115 N are too much for AC at 60 km/h, not at 250 km/h; whatever they are judged by, they are run once."""
+    """115 N are too much for AC at 60 km/h, not at 250 km/h; cases are run once, whatever judges them."""
     arguments = ["sweep", layout, "--speed-kmh", "60", "250", "--pantograph", "EN 50318:2002",
                  "--time-step-ms", "2", "-o", tmp_path / "sweep"]  # fmt: skip
     code, out, err = call(capsys, *arguments, "--criteria", "ac")
@@ -92,7 +92,8 @@ def test_sweep_table(capsys, layout, tmp_path):
     assert "warning: 2 of 2 cases: the start at 10 m is only" in err
     with (tmp_path / "sweep" / "sweep.csv").open() as file:
         slow, fast = csv.DictReader(file)
-    assert (slow["checks_failed"], slow["criteria_missed"], slow["warnings"]) == (FAILED, "mean force", "1")
+    assert (slow["checks_failed"], slow["criteria_missed"]) == (FAILED, "mean force")
+    assert slow["warnings"] == "1"
     assert FAILED not in fast["checks_failed"]
     assert fast["criteria_missed"] == ""
     with (tmp_path / "sweep" / "remarks.csv").open() as file:

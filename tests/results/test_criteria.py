@@ -80,8 +80,8 @@ def test_a_speed_without_a_known_formula_is_not_judged(short_run):
 def test_a_run_set_for_the_largest_mean_force_keeps_it(short_run, pantograph):
     limit = cf.target_mean_force("EN 50367 AC", 250 / 3.6)
     is_set = [pantograph.replace(uplift_force=None, mean_force="EN 50367 AC")]
-    for excess, expected in ((0.09, True), (0.11, False)):
-        assert verdicts(altered(short_run, limit + excess, pantographs=is_set), "mean force")[1] is expected
+    for more, expected in ((0.09, True), (0.11, False)):
+        assert verdicts(altered(short_run, limit + more, pantographs=is_set), "mean force")[1] is expected
     assert verdicts(altered(short_run, limit + 0.09), "mean force")[1] is False  # uplift given: no tolerance
     row = criteria_rows(altered(short_run, limit + 0.04, pantographs=is_set), "AC")[1]
     assert (row.value_text, row.limit_text, row.verdict) == ("130.7 N", "at most 130.6 N (± 0.1)", "passed")

@@ -151,7 +151,8 @@ def test_a_summary_is_in_display_units():
     assert list(summary) == [
         "speed_kmh", "method", "evaluated_spans", "filter", "pantographs", "governing_pantograph",
         "max_support_uplift_mm", "support_uplift_mm", "slack_droppers", "largest_dropper_force_N",
-        "elasticity_non_uniformity_percent", "simulated_s", "wall_s", "real_time_factor", "checks", "checks_failed", "warnings",
+        "elasticity_non_uniformity_percent", "simulated_s", "wall_s", "real_time_factor", "checks",
+        "checks_failed", "warnings",
     ]  # fmt: skip
     assert (summary["speed_kmh"], summary["method"], summary["filter"]) == (200.0, "nonlinear", "zero-phase")
     assert summary["evaluated_spans"] == [3, 4]

@@ -38,7 +38,7 @@ def test_every_picture_can_be_saved(drawings, tmp_path):
 
 
 def test_a_bar_beyond_100_percent_misses_its_criterion(short_run):
-    rows = cf.criteria_rows(short_run, "AC", non_uniformity=0.4)
+    rows = cf.criteria_rows(short_run, "AC")
     ax = views.plot_criteria(rows, title="run")
     assert ax.get_xlabel().endswith("(%)")
     assert len(ax.patches) == len(rows)
@@ -48,6 +48,14 @@ def test_a_bar_beyond_100_percent_misses_its_criterion(short_run):
         if bar.get_width():
             assert row.passed == (bar.get_width() <= 100)
     assert sum(bar.get_width() > 0 for bar in ax.patches) == 6
+
+
+def test_the_force_is_drawn_with_the_filter_of_its_figures(short_run):
+    ax = short_run.plot_contact_force(filter="zero-phase")
+    line = next(c for c in ax.lines if "0 to 20 Hz" in c.get_label())
+    assert line.get_ydata() == pytest.approx(short_run.filtered_contact_force("zero-phase")[0])
+    sigma = short_run.contact_force_statistics(filter="zero-phase")[0].std
+    assert f"σ {sigma:.1f} N" in ax.get_title(loc="left")
 
 
 def test_a_given_axes_is_drawn_on(short_run):
