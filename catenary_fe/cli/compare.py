@@ -49,7 +49,7 @@ def compare(
     from catenary_fe.results.comparison import failed_checks, input_differences, key_figures
 
     runs, labels = [run_in(folder) for folder in folders], _labels(folders)
-    kind, warnings = _common_filter(folders, labels, filter_kind)
+    kind, warnings = common_filter(folders, labels, filter_kind)
     warnings += failed_checks(runs, labels)
     columns, inputs = key_figures(runs, labels, kind), input_differences(runs)
     result: dict[str, Any] = {
@@ -83,7 +83,7 @@ def compare(
         print_warnings(warnings)
 
 
-def _common_filter(
+def common_filter(
     folders: tuple[str, ...], labels: list[str], chosen: FilterKind | None
 ) -> tuple[FilterKind, list[str]]:
     """The filter of all figures, and what to warn of: runs whose own figures are another filter's."""

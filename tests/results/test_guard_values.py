@@ -7,7 +7,7 @@ import pytest
 from made_runs import HEIGHT, made_line, made_pantograph, made_run
 
 import catenary_fe as cf
-from catenary_fe.results.guards import Check
+from catenary_fe.results.check import Check, checks_in_words
 
 TWO = (made_pantograph(name="first"), made_pantograph(name="second"))
 ELASTIC = cf.ElasticPantograph(force=100.0)
@@ -37,6 +37,11 @@ def test_a_check_in_words():
     check = depth(3.0, "at least", 2.0, "")
     assert str(check) == "depth = 3, must be at least 2: why"
     assert str(depth(3.0)) == "depth = 3 mm, must be at most 10 mm: why"
+
+
+def test_checks_in_words():
+    assert checks_in_words([depth(3.0), depth(4.0)]) == "all 2 checks passed"
+    assert checks_in_words([depth(3.0), depth(40.0), depth(11.0)]) == "2 of 3 checks failed: depth, depth"
 
 
 @pytest.mark.parametrize(
@@ -213,12 +218,13 @@ def test_the_tone_lies_near_the_frequency_of_passing(of_frequency, heard):
 ENDING = made_line((50.0,) * 5 + (60.0,))  # spans 3 and 4 are evaluated, until 200 m
 
 
-def lifted(line=ENDING, *, last_but_one, at, inside=0.05, start=(5.0,), **others):
+def lifted(line=ENDING, *, last_but_one, at, inside=0.05, start=(5.0,), run=False, **others):
     """The last support but one moves at one time; those of the evaluated spans once, by ``inside``."""
     uplift = np.zeros((len(line.supports), 2001))
     uplift[3, 10], uplift[-2, round(at / 2e-3)], uplift[-1] = inside, last_but_one, 9.9
     pantographs = TWO[: len(start)]
-    return check(made_run(line, *pantographs, start=start, support_uplift=uplift, **others), "end reflection")
+    made = made_run(line, *pantographs, start=start, support_uplift=uplift, **others)
+    return made if run else check(made, "end reflection")
 
 
 @pytest.mark.parametrize(
@@ -319,3 +325,40 @@ def test_droppers_are_slack_for_a_share_of_the_evaluated_time():
 
 def test_spans_without_droppers_have_none_that_is_slack():
     assert check(made_run(made_line(dropper_every=60.0)), "slack droppers") is None
+
+
+def remedy(run, name):
+    found = check(run, name)
+    assert not found.passed
+    return found.text
+
+
+def test_checks_name_what_it_is_and_what_to_take_instead():
+    """And a bound in a remedy is rounded to the side that keeps it."""
+    tone = made_run(mesh=MESH | {"contact_wire_element": 2.6}, speed=26.0, times=4001)
+    assert "take elements of at most 1.3 m" in remedy(tone, "element-passing frequency")
+    fast = made_run(mesh=MESH, speed=83.0, step=4e-3, times=1001)
+    assert "moves 0.33 m a step, over elements of 0.5 m; take a time step of at most 3 ms" in remedy(
+        fast, "steps in an element"
+    )
+    heads = [made_pantograph((mass, 100.0, 0.0), name=name) for name, mass in (("a", 2.0), ("b", 1.0))]
+    coarse = made_run(None, *heads, start=(5.0, 6.0))
+    said = remedy(coarse, "time steps in a period")
+    assert "of 35.6 Hz, the resonance of the head of b on its contact spring; take a time step of" in said
+    assert said.endswith("at most 1.4 ms")
+    spans = remedy(swelling([50, 10, 13, 8, 30, 50], evaluated_spans=(2, 3, 4)), "start transient")
+    assert spans.startswith("so far σ of first in the equal spans 3 and 4 differs, ")
+    forces = np.full((24, 2001), 0.5)
+    forces[9:13], forces[14, :501] = 0.0, 0.0
+    assert "longest dropper 2 of span 3 with 100 %" in remedy(
+        made_run(dropper_force=forces), "slack droppers"
+    )
+    end = check(lifted(last_but_one=0.02, at=0.5, run=True), "end reflection")
+    assert "add spans behind span 4" in end.text
+
+
+def test_the_pantograph_that_is_out_of_balance_is_named():
+    force = np.full((2, 2001), 100.0)
+    force[1] = 103.0
+    run = made_run(None, *TWO, start=(5.0, 6.0), contact_force=force)
+    assert remedy(run, "force balance").startswith("share of the uplift force of second by which")
