@@ -100,14 +100,16 @@ def run_warnings(
     if speed > WAVE_SPEED_SHARE * wave_speed:
         found.append(
             f"speed {3.6 * speed:.4g} km/h is {speed / wave_speed:.3f} of the contact wire's wave speed,"
-            f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}"
+            f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}, as waves pile up ahead"
+            " of the pantograph; raise contact_wire.tension, or lower the speed"
         )
     longest = float(np.diff(shape.mesh.contact.x).max())
     wavelength = (wave_speed - speed) / CUT_OFF
     if 0 < wavelength < longest:  # beyond the wave speed nothing runs ahead
         found.append(
-            f"elements of up to {longest:.2f} m are longer than the waves of {CUT_OFF:g} Hz ahead of the"
-            f" pantograph, {wavelength:.2f} m; refine the mesh"
+            f"elements of the contact wire of up to {longest:.2f} m are longer than the waves of"
+            f" {CUT_OFF:g} Hz ahead of the pantograph, {wavelength:.2f} m, and cannot carry them; take"
+            " shorter ones (--element-m)"
         )
     if time.step > 1 / (20 * CUT_OFF):
         found.append(
@@ -121,10 +123,11 @@ def run_warnings(
         )
     supports = catenary.support_positions
     reached = int(np.searchsorted(supports, start.max(), side="right")) - 1
-    between = min(catenary.spans_to_evaluate) - 1 - reached
-    if between < RUN_IN:
+    first = min(catenary.spans_to_evaluate)
+    if first - 1 - reached < RUN_IN:
         found.append(
-            f"only {between} spans lie between the start and the evaluated ones; {RUN_IN} let the start's"
-            " transient fade"
+            f"the start at {start.max():g} m is only {supports[first - 1] - start.max():g} m before span"
+            f" {first}, the first evaluated one; {RUN_IN} spans let the start's transient fade: evaluate"
+            " later spans, or start earlier"
         )
     return found

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 _NOTES = 3  # by themselves
-CHECKPOINT_FORM = 2  # rises when what a checkpoint holds changes
+CHECKPOINT_FORM = 3  # rises when what a checkpoint holds changes
 
 
 def make_run(
@@ -111,7 +111,10 @@ def _add_balances(
             ("tension_time",), journey.tension_times, "s", "time of tensions"
         )
         coordinates["wire"] = ("wire", _wire_names(shape))
-        variables["tension_change"] = _labelled(("wire", "tension_time"), journey.tension_change, "1", words)
+        by_wire = ("wire", "tension_time")
+        variables["tension_change"] = _labelled(by_wire, journey.tension_change, "1", words)
+        words = "number of the span where that is; of a stitch wire, always 1"
+        variables["tension_span"] = _labelled(by_wire, journey.tension_span, "1", words)
 
 
 def _wire_names(shape: Shape) -> list[str]:

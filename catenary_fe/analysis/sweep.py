@@ -381,9 +381,6 @@ def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
         del summary[key]  # a table is the same whenever and wherever it was computed
     for i, pantograph in enumerate(summary["pantographs"]):
         pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
-    force = result.data["dropper_force"].values
-    summary["slack_droppers"] = int((force <= 0).any(axis=1).sum())
-    summary["largest_dropper_force_N"] = float(force.max(initial=0.0))
     return {"summary": summary}
 
 

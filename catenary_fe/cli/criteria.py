@@ -3,51 +3,77 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from catenary_fe.cli.folder import read_record
 from catenary_fe.cli.terminal import print_table, progress_bar
-from catenary_fe.system import Catenary, PowerSystem
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.system import PowerSystem
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium import Shape
     from catenary_fe.results import Criterion, Run
 
+filter_option = click.option(
+    "--filter",
+    "filter_kind",
+    type=click.Choice(get_args(FilterKind)),
+    help="Low-pass of the contact force; unset: as in the run's summary.",
+)
 
-def judged(shape: Shape, result: Run, system: PowerSystem, filter_kind: Any, quiet: bool) -> list[Criterion]:
-    """Rows of a run, with the elasticity of the spans that it is evaluated over."""
+
+def evaluated(
+    run: Run, filter: FilterKind, system: PowerSystem | None
+) -> tuple[dict[str, Any], list[Criterion]]:
+    """Summary of a run and, where a system is given, its criteria, which the summary holds too."""
+    from catenary_fe.results import criteria_rows, excess, governing
+
+    summary = run.summary(filter=filter)
+    if system is None:
+        return summary, []
+    rows = criteria_rows(run, system, filter=filter)
+    summary["governing_pantograph"] = governing(run.figures(filter), excess(rows))
+    summary["criteria_system"] = system
+    summary["criteria"] = [row.as_dict() for row in rows]
+    return summary, rows
+
+
+def with_elasticity(run: Run, shape: Shape, quiet: bool) -> Run:
+    """The run with the elasticity of its evaluated spans."""
     from catenary_fe.analysis import elasticity
-    from catenary_fe.results import criteria_rows
 
     with progress_bar("elasticity", not quiet) as progress:
-        curve = elasticity(shape, spans=_kinds_of_spans(shape.catenary), progress=progress)
-    return criteria_rows(result, system, non_uniformity=curve.non_uniformity, filter=filter_kind)
+        return run.with_elasticity(elasticity(shape, progress=progress))
 
 
-def _kinds_of_spans(catenary: Catenary) -> list[int]:
-    """One evaluated span of each kind, with its supports: equal ones have the same elasticity."""
-    kinds: list[Any] = []
-    numbers = []
-    for n in catenary.spans_to_evaluate:
-        kind = (catenary.spans[n - 1], catenary.supports[n - 1 : n + 1])
-        if kind not in kinds:
-            kinds.append(kind)
-            numbers.append(n)
-    return numbers
+def kept_evaluation(folder: str | Path) -> tuple[FilterKind, PowerSystem | None]:
+    """How the run in a folder was evaluated, by its summary: the filter, and the system if it was judged.
+
+    Raises InputError where the summary is damaged.
+    """
+    place = Path(folder) if Path(folder).is_dir() else Path(folder).parent
+    said = read_record(place / "summary.json")
+    kinds: tuple[FilterKind, ...] = get_args(FilterKind)
+    systems: tuple[PowerSystem, ...] = get_args(PowerSystem)
+    return (
+        next((kind for kind in kinds if kind == said.get("filter")), "causal"),
+        next((system for system in systems if system == said.get("criteria_system")), None),
+    )
 
 
 def print_criteria(system: PowerSystem, rows: Sequence[Criterion]) -> None:
     """A table of all criteria."""
-    from catenary_fe.results import labels
+    from catenary_fe.results import criteria_in_words, labels
 
     table = [
         (label, row.value_text, row.limit_text, row.verdict, row.source)
         for label, row in zip(labels(rows), rows, strict=True)
     ]
-    print_table(
-        f"criteria, {system}", ("criterion", "value", "limit", "verdict", "source of the limit"), table
-    )
+    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
+    print_table(f"{system}: {criteria_in_words(rows)}", columns, table)
 
 
 def exit_code(rows: Sequence[Criterion]) -> int:

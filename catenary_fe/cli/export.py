@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
+from catenary_fe.cli.criteria import filter_option, kept_evaluation
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import json_option, print_json, quiet_option
+from catenary_fe.results.signal import FilterKind
 from catenary_fe.system.arguments import number
 
 
@@ -20,17 +21,16 @@ from catenary_fe.system.arguments import number
     "-o", "--output", type=click.Path(), metavar="DIR", help="Folder for the files; unset: FOLDER/csv."
 )
 @click.option("--every-ms", type=float, help="Interval of the rows in ms, rounded to time steps; unset: one.")
-@click.option(
-    "--filter",
-    "filter_kind",
-    type=click.Choice(["causal", "zero-phase"]),
-    default="causal",
-    show_default=True,
-)
+@filter_option
 @json_option
 @quiet_option
 def export(
-    folder: str, output: str | None, every_ms: float | None, filter_kind: Any, as_json: bool, quiet: bool
+    folder: str,
+    output: str | None,
+    every_ms: float | None,
+    filter_kind: FilterKind | None,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Write the histories of the run in FOLDER as CSV files: forces, heights, uplifts, dropper forces.
 
@@ -48,7 +48,8 @@ def export(
     target = (
         Path(output) if output else Path(folder if Path(folder).is_dir() else Path(folder).parent) / "csv"
     )
-    files = write_tables(history_tables(run, filter_kind), target, every)
+    kind = filter_kind or kept_evaluation(folder)[0]
+    files = write_tables(history_tables(run, kind), target, every)
     if as_json:
         print_json({"files": [str(file) for file in files]})
     elif not quiet:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from catenary_fe.cli.criteria import evaluated, kept_evaluation, with_elasticity
 from catenary_fe.cli.folder import output_folder, run_in
 from catenary_fe.cli.inputs import changed_files
 from catenary_fe.cli.run import write_run
@@ -47,7 +48,11 @@ def rerun(folder: str, output: str | None, as_json: bool, quiet: bool) -> int:
         if target:
             for file in (f for pattern in INPUTS for f in Path(folder).glob(pattern)):
                 shutil.copyfile(file, target.path / file.name)
-            write_run(target, found.shape, found.again, found.again.summary())
+            again = (
+                found.again if run.elasticity is None else with_elasticity(found.again, found.shape, quiet)
+            )
+            summary, rows = evaluated(again, *kept_evaluation(folder))
+            write_run(target, found.shape, again, summary, rows)
     result = {
         "identical": found.identical,
         "largest_difference_of_contact_force_N": found.contact_force,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from catenary_fe.cli.completion import pantograph_names
-from catenary_fe.cli.criteria import exit_code, judged, print_criteria
+from catenary_fe.cli.criteria import evaluated, exit_code, print_criteria, with_elasticity
 from catenary_fe.cli.folder import Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
@@ -110,6 +110,12 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     help="Record energy and check its balance with the method exudyn, too: a quarter slower.",
 )
 @click.option(
+    "--elasticity",
+    "with_curve",
+    is_flag=True,
+    help="Compute the elasticity of the evaluated spans, too, and keep it with the run.",
+)
+@click.option(
     "--criteria",
     "system",
     type=click.Choice(get_args(PowerSystem), case_sensitive=False),
@@ -132,6 +138,7 @@ def run(
     store_wire_ms: float | None,
     energy: bool,
     planar: bool,
+    with_curve: bool,
     system: PowerSystem | None,
     output: str | None,
     as_json: bool,
@@ -171,11 +178,9 @@ def run(
                 energy=energy,
                 checkpoint=checkpoint,
             )
-        summary = result.summary(filter=filter_kind)
-        rows = judged(shape, result, system, filter_kind, quiet) if system else []
-        if system:
-            summary["criteria_system"] = system
-            summary["criteria"] = [row.as_dict() for row in rows]
+        if with_curve:
+            result = with_elasticity(result, shape, quiet)
+        summary, rows = evaluated(result, filter_kind, system)
         if folder:
             files.keep(folder, result, options)
             with working("pictures", not quiet):
@@ -269,7 +274,7 @@ def write_run(
     if shape.catenary.is_spatial:
         width = head_width(result.pantographs)
         folder.picture("plan.png", views.plot_plan(shape, head_width=width))
-    folder.picture("contact_force.png", views.plot_contact_force(result))
+    folder.picture("contact_force.png", views.plot_contact_force(result, filter=summary["filter"]))
     folder.picture("support_uplift.png", views.plot_support_uplift(result))
     folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
     if result.has_energy:
@@ -299,7 +304,10 @@ _ROWS = (
     ("statistical minimum (N)", "statistical_min_N", ".1f"),
     ("actual maximum (N)", "max_N", ".1f"),
     ("actual minimum (N)", "min_N", ".1f"),
-    ("contact loss (%)", "contact_loss_percent", ".2f"),
+    ("contact loss, however short (% of the time)", "contact_loss_percent", ".2f"),
+    ("  in losses over 5 ms (% of the time)", "contact_loss_over_5_ms_percent", ".2f"),
+    ("  number of losses over 5 ms", "losses_over_5_ms", "d"),
+    ("  longest loss (ms)", "longest_loss_ms", ".1f"),
     ("range of the contact point (mm)", "contact_point_range_mm", ".1f"),
 )
 
@@ -308,8 +316,13 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
     pantographs = summary["pantographs"]
     rows = [(text, *(format(p[key], form) for p in pantographs)) for text, key, form in _ROWS]
     uplift = f"{summary['max_support_uplift_mm']:.1f}"
-    rows.append(("largest uplift at a support (mm)", uplift, *[""] * (len(pantographs) - 1)))
+    blank = [""] * (len(pantographs) - 1)
+    rows.append(("largest uplift at a support (mm)", uplift, *blank))
+    if (uniformity := summary["elasticity_non_uniformity_percent"]) is not None:
+        rows.append(("non-uniformity of the elasticity (%)", f"{uniformity:.2f}", *blank))
     print_table(_heading(title, summary), ("", *(p["name"] for p in pantographs)), rows)
+    if blank:
+        click.echo(f"governing pantograph: {summary['governing_pantograph']}")
     click.echo(
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
@@ -322,10 +335,10 @@ def _megabytes(folder: str) -> float:
 
 def print_checks(run: Run) -> None:
     """The physics guards as a table."""
+    from catenary_fe.results import checks_in_words
+
     rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
-    failed = len(run.failed_checks)
-    title = f"checks: {failed} of {len(rows)} failed" if failed else f"checks: all {len(rows)} passed"
-    print_table(title, ("check", "value", "bound", "verdict"), rows)
+    print_table(checks_in_words(run.checks), ("check", "value", "bound", "verdict"), rows)
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

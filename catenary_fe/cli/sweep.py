@@ -7,13 +7,14 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 import numpy as np
 
 from catenary_fe.cli.folder import output_folder
 from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.sweep_verdicts import Verdict, exit_code, in_words, remarks, verdict_of, warn_once
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -24,7 +25,7 @@ from catenary_fe.cli.terminal import (
     say,
     spans_option,
 )
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary, InputError, PowerSystem
 from catenary_fe.system.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
 
 if TYPE_CHECKING:
@@ -48,8 +49,9 @@ _MOST = 100_000
 _FIGURES = (
     ("mean_N", "mean N"), ("std_N", "σ N"), ("statistical_min_N", "stat. min N"),
     ("statistical_max_N", "stat. max N"), ("min_N", "min N"), ("max_N", "max N"),
-    ("contact_loss_percent", "loss %"), ("max_support_uplift_mm", "uplift mm"),
+    ("contact_loss_over_5_ms_percent", "loss > 5 ms %"), ("max_support_uplift_mm", "uplift mm"),
 )  # fmt: skip
+_DIGITS = {"contact_loss_over_5_ms_percent": 2}
 
 
 @click.command(
@@ -74,6 +76,12 @@ _FIGURES = (
 @click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
 @click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
 @spans_option
+@click.option(
+    "--criteria",
+    "system",
+    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
+    help="Judge the cases by the limits of this system; exit code 1 where one misses any.",
+)
 @click.option("--jobs", type=click.IntRange(1), help="Number of processes; unset: one a core.")
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
 @click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
@@ -92,13 +100,14 @@ def sweep(
     time_step_ms: float,
     element_m: float | None,
     spans: list[int] | None,
+    system: PowerSystem | None,
     jobs: int | None,
     scheduler: str | None,
     retry_failed: bool,
     output: str,
     as_json: bool,
     quiet: bool,
-) -> None:
+) -> int:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
     from catenary_fe.analysis.sweep import LOST, SweepSettings, run_sweep
     from catenary_fe.fe import MeshSettings, TimeSettings
@@ -126,15 +135,20 @@ def sweep(
             retry=retry_failed,
             progress=(lambda done, all_: progress(done / all_)) if progress else None,
         )
-    rows = [row for record in records for row in _rows(record)]
-    _write(output, rows, axes)
+    verdicts = [verdict_of(record, case, system) for record, case in zip(records, cases, strict=True)]
+    rows = [row for both in zip(records, verdicts, strict=True) for row in _rows(*both, system)]
+    _write(output, rows, axes, verdicts)
     if as_json:
         print_json(rows)
     elif not quiet:
         _print(rows, axes)
+        for words in in_words(verdicts, system):
+            click.echo(words)
         click.echo(f"table and pictures in {output}")
     if not quiet:
         _say_lengths(cases)
+    if not as_json:
+        warn_once(verdicts)
     failed = [record for record in records if "error" in record]
     for record in failed:
         said = ", ".join(f"{name} = {value}" for name, value in record["values"].items())
@@ -148,6 +162,7 @@ def sweep(
         )
     if failed and (lost or len(failed) == len(records)):
         raise click.exceptions.Exit((lost or failed)[0]["exit_code"])
+    return exit_code(verdicts, system)
 
 
 def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
@@ -254,11 +269,12 @@ def _cases(
     return cases
 
 
-def _rows(record: Record) -> list[dict[str, Any]]:
+def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[dict[str, Any]]:
     """One row a pantograph; a failed case has one row with its error."""
-    if "error" in record:
-        return [record["values"] | {"error": record["error"]}]
+    if verdict.error:
+        return [record["values"] | {"error": verdict.error}]
     summary = record["summary"]
+    several = len(summary["pantographs"]) > 1
     common = {
         key: summary[key]
         for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
@@ -266,18 +282,19 @@ def _rows(record: Record) -> list[dict[str, Any]]:
     return [
         record["values"]
         | {"number": i}
+        | ({"governs": "yes" if statistics["name"] == verdict.governing else ""} if several else {})
         | {key: value for key, value in statistics.items() if key != "name"}
         | common
-        | {
-            "checks_failed": "; ".join(c["name"] for c in summary["checks"] if not c["passed"]),
-            "warnings": len(summary["warnings"]),
-            "error": "",
-        }
+        | {"checks_failed": "; ".join(verdict.failed_checks)}
+        | ({"criteria_missed": verdict.missed_by(statistics["name"])} if system else {})
+        | {"warnings": len(verdict.warnings), "error": ""}
         for i, statistics in enumerate(summary["pantographs"], start=1)
     ]
 
 
-def _write(output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
+def _write(
+    output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]], verdicts: Sequence[Verdict]
+) -> None:
     from catenary_fe import views
 
     columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
@@ -286,6 +303,10 @@ def _write(output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any
         names = {key: f"{key} [{unit}]" if (unit := unit_of(key)) else key for key in columns}
         table = [{name: row.get(key, "") for key, name in names.items()} for row in rows]
         folder.table("sweep.csv", table)
+        if said := list(remarks(verdicts)):
+            folder.table("remarks.csv", said)
+        else:
+            folder.forget("remarks.csv")  # of an earlier state of the sweep
         x, by = _axis(axes)
         good = [row for row in rows if not row["error"]]
         if good and x:
@@ -305,17 +326,23 @@ def _axis(axes: dict[str, list[Any]]) -> tuple[str | None, list[str]]:
 def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
     varied = [name for name, values in axes.items() if len(values) > 1] or ["speed_kmh"]
     if any(row.get("number", 1) > 1 for row in rows):
-        varied.append("number")
+        varied += ["number", "governs"]
+    said = [key for key in ("checks_failed", "criteria_missed") if any(key in row for row in rows)]
     table = [
         [
             *(row.get(name, "") for name in varied),
             *(_shown(row, key) for key, _ in _FIGURES),
-            row.get("checks_failed", ""),
+            *(_count(row.get(key, "")) for key in said),
         ]
         for row in rows
     ]
-    print_table("sweep", [*varied, *(title for _, title in _FIGURES), "checks failed"], table)
+    titles = [*varied, *(title for _, title in _FIGURES), *(key.replace("_", " ") for key in said)]
+    print_table("sweep", titles, table)
+
+
+def _count(names: str) -> int | str:
+    return len(names.split("; ")) if names else ""
 
 
 def _shown(row: dict[str, Any], key: str) -> str:
-    return "failed" if row["error"] else f"{row[key]:.1f}"
+    return "failed" if row["error"] else f"{row[key]:.{_DIGITS.get(key, 1)}f}"

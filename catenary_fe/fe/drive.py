@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.contact import MovingContact
 from catenary_fe.fe.energy import EnergyLedger
-from catenary_fe.fe.faults import most_strained, place_of_heads
+from catenary_fe.fe.faults import most_strained, place_of_heads, smaller_steps
 from catenary_fe.fe.installation import Installation, dropper_damping
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.model import Model, build_model
@@ -52,6 +52,7 @@ class Journey:
     lost_work : [J], shape (times,), lost in the dampers of wires, droppers, supports and pantographs, or none
     tension_change : shape (wires, tension_times), largest relative change of each wire's tension between two
         supports since the start, or none
+    tension_span : shape (wires, tension_times), number of the span (from 1) where that is
     tension_times : [s]
     notes : what to warn of in the result
     """
@@ -71,6 +72,7 @@ class Journey:
     driven_work: Floats
     lost_work: Floats | None = None
     tension_change: Floats | None = None
+    tension_span: NDArray[np.int64] | None = None
     tension_times: Floats | None = None
     notes: tuple[str, ...] = ()
 
@@ -99,6 +101,7 @@ class Journey:
             driven_work=self.driven_work[:n],
             lost_work=None if self.lost_work is None else self.lost_work[:n],
             tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
+            tension_span=None if self.tension_span is None else self.tension_span[:, :tensions],
             tension_times=None if self.tension_times is None else self.tension_times[:tensions],
         )
 
@@ -345,10 +348,12 @@ class _Recorder:
             driven_work=self._ledger.work if self._ledger else np.array([]),
             lost_work=self._ledger.loss if self._ledger else None,
             tension_change=self._tension.changes,
+            tension_span=self._tension.spans,
             tension_times=self._tension.times,
             notes=tuple(
-                f"no convergence with the time step after {at:.4f} s: on from there in steps of 1/{parts} of"
-                f" it for {1e3 * STRETCH * trip.time.step:g} ms"
+                smaller_steps(
+                    model.catenary, trip.start + trip.speed * at, at, parts, 1e3 * STRETCH * trip.time.step
+                )
                 for at, parts in self._notes.items()
             ),
         )

@@ -71,6 +71,17 @@ def place_of_heads(catenary: Catenary, positions: Sequence[float] | Floats) -> s
     return "; ".join(texts)
 
 
+def smaller_steps(
+    catenary: Catenary, positions: Sequence[float] | Floats, time: float, parts: int, lasted: float
+) -> str:
+    """A warning that steps were divided: when [s], into how many parts, for how long [ms], and where."""
+    return (
+        f"no convergence with the time step at {time:.4f} s, {place_of_heads(catenary, positions)}: the"
+        f" {lasted:g} ms from there are computed in steps of 1/{parts} of it; if the force is rough there,"
+        " take a smaller time step for all of the run"
+    )
+
+
 def most_strained(
     catenary: Catenary, positions: Sequence[float] | Floats, forces: Floats, before: Floats
 ) -> str:

@@ -83,6 +83,20 @@ class Bows:
 
 
 @dataclass(frozen=True)
+class Gaps:
+    """Lengths of wire between two clamps, over which the tension is even.
+
+    wire : shape (gaps,), number of the wire in the mesh
+    ends : [m], shape (gaps, 2), along the line
+    tension : [N], shape (gaps,), nominal
+    """
+
+    wire: Integers
+    ends: Floats
+    tension: Floats
+
+
+@dataclass(frozen=True)
 class LinearModel:
     """M q̈ + D q̇ + K q = f with all droppers taut; coordinates in the order of their stations.
 
@@ -96,7 +110,7 @@ class LinearModel:
     tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
     links : steady arms that swing
     bows : elements whose inclination lengthens a gap
-    rest_tension : [N], shape (gaps,), nominal tension of their wires
+    gaps : where these tensions are
     in_space : whether it has coordinates to the side
     """
 
@@ -110,7 +124,7 @@ class LinearModel:
     contacts: tuple[ContactLine, ...]
     heights: Integers
     tensions: Integers
-    rest_tension: Floats
+    gaps: Gaps
     links: SwingingLinks
     bows: Bows
     in_space: bool
@@ -154,10 +168,18 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
         contacts=contact_lines(system, mesh, installation, place),
         heights=place[2 * system.axes * np.arange(mesh.first_nodes[-1]) + up],
         tensions=place[whole:],
-        rest_tension=np.concatenate([w.tension for w in wires]),
+        gaps=_gaps(wires),
         links=_swinging_links(system, place),
         bows=_bows(system, installation, wires, place),
         in_space=system.in_space,
+    )
+
+
+def _gaps(wires: list[_ReducedWire]) -> Gaps:
+    return Gaps(
+        wire=np.repeat(np.arange(len(wires)), [wire.tension.size for wire in wires]),
+        ends=np.concatenate([np.column_stack([wire.gap_x[:-1], wire.gap_x[1:]]) for wire in wires]),
+        tension=np.concatenate([wire.tension for wire in wires]),
     )
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 INTERVAL = 0.05  # [s] between readings in a run: 4 m at 300 km/h
 _POINTS = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2  # Gauss: the mean of a cubic wire's strain
 
@@ -68,10 +69,14 @@ class TensionGauge:
         tensions: Floats = self._nominal + self._stiffness * mean
         return tensions
 
-    def largest_change(self, now: Floats, before: Floats) -> Floats:
-        """Shape (wires,): of the sections of each wire, the largest change over its tension before."""
+    def largest_change(self, now: Floats, before: Floats) -> tuple[Floats, Integers]:
+        """Of the sections of each wire, the largest change over its tension before, and which section it is.
+
+        Shape (wires,) both; sections count from 1, so that those of a whole wire are its spans.
+        """
         share = np.abs(now / before - 1)
-        return np.array([share[self._owner == wire].max() for wire in np.unique(self._owner)])
+        by_wire = [share[self._owner == wire] for wire in np.unique(self._owner)]
+        return np.array([own.max() for own in by_wire]), np.array([own.argmax() + 1 for own in by_wire])
 
 
 class TensionRecord:
@@ -81,6 +86,7 @@ class TensionRecord:
         self._gauge = gauge
         self._times: list[float] = []
         self._changes: list[Floats] = []
+        self._spans: list[Integers] = []
         self._first: Floats | None = None
 
     def read(self, time: float, q: Floats) -> None:
@@ -88,16 +94,20 @@ class TensionRecord:
         now = self._gauge.tensions(q)
         if self._first is None:
             self._first = now
-        self._changes.append(self._gauge.largest_change(now, self._first))
+        change, span = self._gauge.largest_change(now, self._first)
+        self._changes.append(change)
+        self._spans.append(span)
         self._times.append(time)
 
-    def go_on(self, times: Floats, changes: Floats) -> None:
+    def go_on(self, times: Floats, changes: Floats, spans: Integers) -> None:
         """Take up readings made before, the first one excepted, which is read again."""
-        self._times, self._changes = times.tolist(), list(changes.T)
+        self._times, self._changes, self._spans = times.tolist(), list(changes.T), list(spans.T)
 
     def joined(self, journey: Journey) -> Journey:
         """The journey with what was read."""
-        return replace(journey, tension_change=self.changes, tension_times=self.times)
+        return replace(
+            journey, tension_change=self.changes, tension_span=self.spans, tension_times=self.times
+        )
 
     @property
     def times(self) -> Floats:
@@ -108,3 +118,8 @@ class TensionRecord:
     def changes(self) -> Floats:
         """Shape (wires, readings)."""
         return np.array(self._changes).T
+
+    @property
+    def spans(self) -> Integers:
+        """Shape (wires, readings), from 1: where each wire's largest change is."""
+        return np.array(self._spans).T

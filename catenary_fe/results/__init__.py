@@ -5,6 +5,7 @@ False, or None where no limit is known; ``missed(rows)`` are those that fail, ``
 a table.
 """
 
+from catenary_fe.results.check import Check, checks_in_words
 from catenary_fe.results.comparison import (
     Column,
     InputDifference,
@@ -12,15 +13,24 @@ from catenary_fe.results.comparison import (
     input_differences,
     key_figures,
 )
-from catenary_fe.results.criteria import Criterion, criteria_rows, labels, missed
+from catenary_fe.results.criteria import (
+    Criterion,
+    KeyFigures,
+    criteria_in_words,
+    criteria_rows,
+    excess,
+    judge,
+    labels,
+    missed,
+)
 from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.export import history_tables, write_tables
-from catenary_fe.results.guards import Check, run_checks
+from catenary_fe.results.guards import run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
-from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
 from catenary_fe.results.wires import WireHistory
 
 __all__ = [
@@ -30,6 +40,7 @@ __all__ = [
     "Elasticity",
     "ForceStatistics",
     "InputDifference",
+    "KeyFigures",
     "ModalRun",
     "ModeKind",
     "Modes",
@@ -37,11 +48,16 @@ __all__ = [
     "WireHistory",
     "WireShapes",
     "band_pass",
+    "checks_in_words",
+    "criteria_in_words",
     "criteria_rows",
+    "excess",
     "failed_checks",
     "force_statistics",
+    "governing",
     "history_tables",
     "input_differences",
+    "judge",
     "key_figures",
     "labels",
     "load_run",

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from catenary_fe.results.check import FAILED
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import InputError
@@ -21,10 +22,14 @@ QUANTITIES = {
     "statistical_min_N": "statistical minimum (N)",
     "max_N": "actual maximum (N)",
     "min_N": "actual minimum (N)",
-    "contact_loss_percent": "contact loss (%)",
+    "contact_loss_percent": "contact loss, however short (% of the time)",
+    "contact_loss_over_5_ms_percent": "contact loss over 5 ms (% of the time)",
+    "losses_over_5_ms": "number of losses over 5 ms",
+    "longest_loss_ms": "longest loss (ms)",
     "contact_point_range_mm": "range of the contact point (mm)",
     "max_support_uplift_mm": "largest uplift at a support (mm)",
     "slack_droppers": "droppers that went slack",
+    "elasticity_non_uniformity_percent": "non-uniformity of the elasticity (%)",
     "checks_failed": "checks failed",
 }
 _LISTED = 12  # values by themselves
@@ -35,11 +40,11 @@ class Column:
     """Key figures of one pantograph of one run.
 
     label : of the run, and of the pantograph where there are several
-    values : by the keys of ``QUANTITIES``
+    values : by the keys of ``QUANTITIES``; None where a run does not hold it
     """
 
     label: str
-    values: dict[str, float]
+    values: dict[str, float | None]
 
 
 @dataclass(frozen=True)
@@ -57,28 +62,29 @@ class InputDifference:
 def key_figures(runs: Sequence[Run], labels: Sequence[str], filter: FilterKind = "causal") -> list[Column]:
     """Key figures of all pantographs of all runs, over each run's evaluated spans.
 
-    Raises InputError for fewer than two runs.
+    Raises InputError for fewer than two runs, and for partial ones that did not pass these spans.
     """
     if len(runs) < 2:
         raise InputError(f"{len(runs)} run to compare: give at least two")
+    for run in runs:
+        run.contact_force_statistics(filter=filter)
     columns = []
     for run, label in zip(runs, labels, strict=True):
-        uplift = 1e3 * run.largest_support_uplift()
-        slack = int((run.data["dropper_force"].values <= 0).any(axis=1).sum())
-        for statistics in run.contact_force_statistics(filter=filter):
-            values: dict[str, Any] = statistics.as_dict()
-            name = values.pop("name")
-            several = run.data.sizes["pantograph"] > 1
-            values |= {"max_support_uplift_mm": uplift, "slack_droppers": slack}
-            values["checks_failed"] = len(run.failed_checks)
-            columns.append(Column(f"{label}: {name}" if several else label, values))
+        summary = run.summary(filter=filter)
+        summary["checks_failed"] = len(run.failed_checks)
+        pantographs = summary["pantographs"]
+        for statistics in pantographs:
+            values = {key: statistics.get(key, summary.get(key)) for key in QUANTITIES}
+            columns.append(
+                Column(f"{label}: {statistics['name']}" if len(pantographs) > 1 else label, values)
+            )
     return columns
 
 
 def failed_checks(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
     """One line for each check that a run fails."""
     return [
-        f"{label}: check failed: {check}"
+        f"{label}: {FAILED}{check}"
         for run, label in zip(runs, labels, strict=True)
         for check in run.checks
         if not check.passed

@@ -7,18 +7,17 @@ is there for every run, loaded ones too. A guard that cannot be judged on a run 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from math import pi, sqrt
-from typing import TYPE_CHECKING, Any, Literal
+from math import floor, log10, pi, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 from catenary_fe.system import Pantograph
-from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     from catenary_fe.results.run import Run
@@ -39,59 +38,6 @@ HANN_WIDTH = 1.5  # by which a Hann window widens a line of the spectrum
 REFLECTED = 0.1  # of the uplift at the supports
 SPREAD = 0.2  # of the standard deviation
 SLACK = 0.1  # of the droppers' time
-
-
-@changed_by_copy
-@dataclass(frozen=True)
-class Check:
-    """One guard: what was found, what it must be, and what to do if it is not.
-
-    name : short, for tables and JSON
-    rule : whether the bound is the largest ("at most") or the smallest ("at least") good value
-    text : what value and bound are, and the remedy
-    """
-
-    name: str
-    value: float
-    unit: str
-    rule: Literal["at most", "at least"]
-    bound: float
-    text: str
-
-    @property
-    def value_text(self) -> str:
-        """Value and unit as a table says them."""
-        text = f"{self.value:.4g}" if abs(self.value) >= 1e-3 else f"{self.value:.1g}"
-        return f"{text} {self.unit}".rstrip()
-
-    @property
-    def bound_text(self) -> str:
-        """Rule, bound and unit as a table says them."""
-        return f"{self.rule} {self.bound:.4g} {self.unit}".rstrip()
-
-    @property
-    def verdict(self) -> str:
-        """'passed' or 'failed'."""
-        return "passed" if self.passed else "failed"
-
-    @property
-    def passed(self) -> bool:
-        """False also where the value is not a number."""
-        return self.value <= self.bound if self.rule == "at most" else self.value >= self.bound
-
-    def as_dict(self) -> dict[str, Any]:
-        """Ready for JSON."""
-        return {
-            "name": self.name,
-            "value": self.value if np.isfinite(self.value) else None,
-            "unit": self.unit,
-            "rule": self.rule,
-            "bound": self.bound,
-            "passed": bool(self.passed),
-        }
-
-    def __str__(self) -> str:
-        return f"{self.name} = {self.value_text}, must be {self.bound_text}: {self.text}"
 
 
 def run_checks(run: Run) -> tuple[Check, ...]:
@@ -119,18 +65,40 @@ def _lumped(run: Run) -> list[tuple[int, Pantograph]]:
     return [(i, p) for i, p in enumerate(run.pantographs) if isinstance(p, Pantograph)]
 
 
+def _name(run: Run, pantograph: int) -> str:
+    return str(run.data["pantograph"].values[pantograph])
+
+
+def _worst(found: Sequence[tuple[float, str]]) -> tuple[float, str]:
+    """The largest value, and what is said of it; what is not a number is the worst of all."""
+    return max(found, key=lambda item: np.inf if np.isnan(item[0]) else item[0])
+
+
+def _down(value: float) -> str:
+    """Two digits of a positive number, rounded down: what is taken for a bound keeps it."""
+    unit = 10.0 ** (floor(log10(value)) - 1)
+    return f"{floor(value / unit + 1e-9) * unit:.2g}"
+
+
 def _penetration(run: Run) -> Iterator[Check]:
     """The contact spring stands for a hard contact: 50 kN/m gives by 4 mm under 200 N, by 10 mm under 500 N.
 
     What goes deeper is a spring so soft that it changes the result, or an impact that no head survives.
     """
-    depths = [
-        float((run.data["mass_height"].values[i, 0] - run.data["wire_height"].values[i]).max())
-        for i, _ in _lumped(run)
-    ]
-    if depths:
-        text = "the head goes into the wire; take a stiffer contact, and look at the peaks of the force"
-        yield Check("penetration", 1e3 * float(np.max(depths)), "mm", "at most", 1e3 * DEEPEST, text)
+    found = []
+    for i, pantograph in _lumped(run):
+        depth = run.data["mass_height"].values[i, 0] - run.data["wire_height"].values[i]
+        x, force = (float(run.data[n].values[i, depth.argmax()]) for n in ("position", "contact_force"))
+        span = int(np.searchsorted(run.data["support_position"].values, x))
+        text = (
+            f"so deep the head of {_name(run, i)} goes into the wire at {x:.1f} m (span {span}), under"
+            f" {force:.0f} N; raise contact_stiffness from {pantograph.contact_stiffness:g} N/m, or find what"
+            " the head hits there"
+        )
+        found.append((1e3 * float(depth.max()), text))
+    if found:
+        value, text = _worst(found)
+        yield Check("penetration", value, "mm", "at most", 1e3 * DEEPEST, text)
 
 
 def _force_balance(run: Run) -> Iterator[Check]:
@@ -141,7 +109,7 @@ def _force_balance(run: Run) -> Iterator[Check]:
     """
     if run.time.size < 3:
         return
-    shares = []
+    found = []
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         masses, heights = _chain(run, i, pantograph)
@@ -153,10 +121,14 @@ def _force_balance(run: Run) -> Iterator[Check]:
         pushed -= lowest.damping * (base[-1] - base[0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
         gained = masses @ velocity
-        shares.append(abs(float(pushed - gained)) / duration / uplift)
-    if shares:
-        text = "forces on a pantograph and its momentum do not agree; take a smaller time step or tolerance"
-        yield Check("force balance", 100 * float(np.max(shares)), "%", "at most", 100 * IMBALANCE, text)
+        found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
+    if found:
+        value, name = _worst(found)
+        text = (
+            f"share of the uplift force of {name} by which the forces on it and its momentum do not agree;"
+            " take a smaller time step or tolerance"
+        )
+        yield Check("force balance", value, "%", "at most", 100 * IMBALANCE, text)
 
 
 def _chain(run: Run, number: int, pantograph: Pantograph) -> tuple[Floats, Floats]:
@@ -175,7 +147,7 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
     force at its ends along the displacement. Of heads with several strips, or that roll, the single forces
     are not known.
     """
-    shares = []
+    found = []
     for i, pantograph in _lumped(run):
         head = pantograph.head
         rolls = run.catenary.is_spatial and head and head.spring_distance
@@ -192,12 +164,14 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
         stored = (masses @ velocity**2 + stiffness @ joints**2) / 2
         balance = np.cumsum(pushed + uplift * moved[-1] - lost) - (stored[1:] - stored[0])
         share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
-        shares.append(float(share))
-    if shares:
-        text = "of the contact force's work on a pantograph does not stay in it; take a smaller time step"
-        yield Check(
-            "pantograph energy", 100 * float(np.max(shares)), "%", "at most", 100 * STAGES_UNBALANCED, text
+        found.append((100 * float(share), _name(run, i)))
+    if found:
+        value, name = _worst(found)
+        text = (
+            f"share of the contact force's work on {name} that its springs, dampers and masses do not account"
+            " for; take a smaller time step"
         )
+        yield Check("pantograph energy", value, "%", "at most", 100 * STAGES_UNBALANCED, text)
 
 
 def _energy_balance(run: Run) -> Iterator[Check]:
@@ -212,7 +186,7 @@ def _energy_balance(run: Run) -> Iterator[Check]:
     for i, pantograph in _lumped(run):  # the energy's potential has the uplift's work in it
         lowest = _chain(run, i, pantograph)[1][-1]
         work += float(run.data["uplift_force"].values[i]) * np.abs(lowest - lowest[0]).max()
-    text = "of the work done on wires and pantographs is missing; take a smaller time step or tolerance"
+    text = "share of the work on wires and pantographs that is missing; take a smaller time step or tolerance"
     share = 100 * float(missing / max(work, 1e-9))
     yield Check("energy balance", share, "%", "at most", 100 * UNBALANCED, text)
 
@@ -224,10 +198,17 @@ def _tension_drift(run: Run) -> Iterator[Check]:
     keeps, change by 6 % and are not judged.
     """
     if "tension_change" in run.data:
-        wires = [i for i, name in enumerate(run.data["wire"].values) if not str(name).startswith("stitch")]
-        value = 100 * float(run.data["tension_change"].values[wires].max())
-        text = "change of a wire's tension since the start; look for what holds it along the track"
-        yield Check("tension drift", value, "%", "at most", 100 * DRIFT, text)
+        names = [str(name) for name in run.data["wire"].values if not str(name).startswith("stitch")]
+        changes = run.data["tension_change"].values[: len(names)]
+        wire, reading = np.unravel_index(changes.argmax(), changes.shape)
+        span = int(run.data["tension_span"].values[wire, reading])
+        text = (
+            f"change of the {names[wire].replace('_', ' ')}'s tension in span {span} since the start, at"
+            f" {float(run.data['tension_time'].values[reading]):.2f} s; look for what holds the wire along"
+            " the track there"
+        )
+        share = 100 * float(changes[wire, reading])
+        yield Check("tension drift", share, "%", "at most", 100 * DRIFT, text)
 
 
 def _mesh(run: Run) -> dict[str, float]:
@@ -249,18 +230,25 @@ def _element_passing(run: Run) -> Iterator[Check]:
     frequency, catenary = run.speed / longest, run.catenary
     clamps = np.unique(np.concatenate([catenary.dropper_positions, catenary.support_positions]))
     if frequency >= CUT_OFF or FINE * longest > np.median(np.diff(clamps)):
-        text = "elements are passed in the band of the filter; take shorter ones (--element-m)"
+        text = (
+            f"at this rate elements of {longest:g} m are passed, inside the filter's band: the force has a"
+            f" tone of the mesh; take elements of at most {_down(run.speed / CUT_OFF)} m (--element-m)"
+        )
         yield Check("element-passing frequency", frequency, "Hz", "at least", CUT_OFF, text)
         return
-    shares = []
+    found = []
     for i, force in enumerate(run.filtered_contact_force()):
         inside = force[run.window(i)]
         of_line, amplitude = spectrum(inside, run.step)
         band = (of_line > TONE_BAND[0] * frequency) & (of_line < TONE_BAND[1] * frequency)
         rms = sqrt(float((amplitude[band] ** 2).sum()) / 2 / HANN_WIDTH)
-        shares.append(rms / max(abs(float(inside.mean())), 1e-9))
-    text = f"of the mean force, as elements are passed at {frequency:.1f} Hz; take shorter ones (--element-m)"
-    yield Check("element-passing tone", 100 * float(np.max(shares)), "%", "at most", 100 * TONE, text)
+        found.append((100 * rms / max(abs(float(inside.mean())), 1e-9), _name(run, i)))
+    value, name = _worst(found)
+    text = (
+        f"share of the mean force of {name}, as elements of {longest:g} m are passed at {frequency:.1f} Hz;"
+        " take shorter ones (--element-m)"
+    )
+    yield Check("element-passing tone", value, "%", "at most", 100 * TONE, text)
 
 
 def _steps_per_element(run: Run) -> Iterator[Check]:
@@ -268,16 +256,25 @@ def _steps_per_element(run: Run) -> Iterator[Check]:
     mesh = _mesh(run)
     if mesh:
         shortest = min(mesh["at_clamps"], mesh["contact_wire_element"])
-        text = "the pantograph jumps over the shortest elements; take a smaller time step"
         steps = shortest / (run.speed * run.step)
+        text = (
+            f"a pantograph moves {run.speed * run.step:.2g} m a step, over elements of {shortest:g} m; take a"
+            f" time step of at most {_down(1e3 * shortest / run.speed / STEPS_AN_ELEMENT)} ms"
+        )
         yield Check("steps in an element", steps, "", "at least", STEPS_AN_ELEMENT, text)
 
 
 def _steps_per_period(run: Run) -> Iterator[Check]:
     """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
-    resonances = [sqrt(p.contact_stiffness / p.stages[0].mass) / (2 * pi) for _, p in _lumped(run)]
-    highest = max([CUT_OFF, *resonances])
-    text = f"in a period of {highest:.1f} Hz, the filter's or the head's on the contact; take a smaller step"
+    found = [(CUT_OFF, "the filter's cut-off")]
+    for i, p in _lumped(run):
+        resonance = sqrt(p.contact_stiffness / p.stages[0].mass) / (2 * pi)
+        found.append((resonance, f"the resonance of the head of {_name(run, i)} on its contact spring"))
+    highest, what = max(found)
+    text = (
+        f"in a period of {highest:.1f} Hz, {what}; take a time step of at most"
+        f" {_down(1e3 / highest / STEPS_A_PERIOD)} ms"
+    )
     yield Check("time steps in a period", 1 / (highest * run.step), "", "at least", STEPS_A_PERIOD, text)
 
 
@@ -298,8 +295,9 @@ def _end_reflection(run: Run) -> Iterator[Check]:
     moved = np.abs(run.data["support_uplift"].values[-2, run.time <= leaving - behind / fastest])
     share = float(moved.max(initial=0.0)) / max(run.largest_support_uplift(), 1e-6)
     text = (
-        "of the largest uplift reaches the line's end early enough to be back before the evaluated spans end"
-        f" at {end:g} m; add spans behind them or evaluate earlier ones"
+        "share of the largest uplift that reaches the line's last support but one early enough to be back"
+        f" before the evaluated spans end at {end:g} m; add spans behind span {max(run.evaluated_spans)}, or"
+        " evaluate earlier ones"
     )
     yield Check("end reflection", 100 * share, "%", "at most", 100 * REFLECTED, text)
 
@@ -320,23 +318,31 @@ def _start_transient(run: Run) -> Iterator[Check]:
     ]
     if not equal:
         return
-    shares = []
+    found = []
     for a, b in equal:
-        for before, after in zip(
-            run.contact_force_statistics([a]), run.contact_force_statistics([b]), strict=True
-        ):
-            shares.append(2 * abs(before.std - after.std) / (before.std + after.std or 1.0))
-    text = (
-        "standard deviations of neighbouring equal spans differ: the start's transient or reflections are"
-        " still there; evaluate spans further from the start and the ends"
-    )
-    yield Check("start transient", 100 * float(np.max(shares)), "%", "at most", 100 * SPREAD, text)
+        for s, t in zip(run.contact_force_statistics([a]), run.contact_force_statistics([b]), strict=True):
+            text = (
+                f"so far σ of {s.pantograph} in the equal spans {a} and {b} differs, {s.std:.1f} and"
+                f" {t.std:.1f} N: what is left of the start or comes back from the end is still there;"
+                " evaluate spans further from both"
+            )
+            found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
+    value, text = _worst(found)
+    yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
 
 
 def _slack_droppers(run: Run) -> Iterator[Check]:
     """A passing pantograph slackens the droppers near it for a moment; more is a wire that is not carried."""
-    inside = np.isin(run.data["dropper_span"].values, run.evaluated_spans)
-    forces = run.data["dropper_force"].values[inside]
-    if forces.size:
-        text = "share of the time that droppers of the evaluated spans are slack; look at uplift and lengths"
-        yield Check("slack droppers", 100 * float((forces <= 0).mean()), "%", "at most", 100 * SLACK, text)
+    spans = run.data["dropper_span"].values
+    inside = np.flatnonzero(np.isin(spans, run.evaluated_spans))
+    if not inside.size:
+        return
+    slack = (run.data["dropper_force"].values[inside] <= 0).mean(axis=1)
+    longest = int(inside[slack.argmax()])
+    number = longest - int(np.searchsorted(spans, spans[longest])) + 1
+    text = (
+        "share of the time that droppers of the evaluated spans are slack, longest dropper"
+        f" {number} of span {spans[longest]} with {100 * slack.max():.0f} %; look at the uplift and at the"
+        " droppers' lengths"
+    )
+    yield Check("slack droppers", 100 * float(slack.mean()), "%", "at most", 100 * SLACK, text)

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.results.check import FAILED, Check
 from catenary_fe.results.checksum import ATTRIBUTE, checksum
+from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.files import written_aside
-from catenary_fe.results.guards import Check, run_checks
+from catenary_fe.results.guards import run_checks
 from catenary_fe.results.partial import Partial
 from catenary_fe.results.signal import FilterKind, low_pass
-from catenary_fe.results.statistics import ForceStatistics, force_statistics
+from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
 from catenary_fe.results.wires import WireHistory, wire_histories
 from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
 from catenary_fe.system.arguments import checked, span_numbers, whole
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Floats = NDArray[np.float64]
-FORMAT = "catenary_fe run 1"
+FORMAT = "catenary_fe run 2"
 
 
 @changed_by_copy
@@ -38,8 +40,9 @@ class Run:
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
         dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
-        were stored; of nonlinear runs tension_change, energy, driven_work and lost_work; each has ``units``
-        and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
+        were stored; of nonlinear runs tension_change, energy, driven_work and lost_work; elasticity_uplift
+        where it was computed; each has ``units`` and ``long_name``. Attributes hold the inputs, their hash,
+        versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 
@@ -100,7 +103,7 @@ class Run:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the program warned of before the run, and the checks that it failed."""
-        failed = [f"check failed: {check}" for check in self.checks if not check.passed]
+        failed = [f"{FAILED}{check}" for check in self.checks if not check.passed]
         partial = [str(self.partial)] if self.partial else []
         return (*partial, *json.loads(self.data.attrs["warnings"]), *failed)
 
@@ -117,6 +120,29 @@ class Run:
     def wires(self) -> tuple[WireHistory, ...]:
         """Whole wires over time, contact wires first. Raises InputError where the run stored none."""
         return wire_histories(self.data)
+
+    @property
+    def elasticity(self) -> Elasticity | None:
+        """The line's elasticity as it was computed for this run, see :meth:`with_elasticity`; None: never."""
+        if "elasticity_uplift" not in self.data:
+            return None
+        uplift, x = self.data["elasticity_uplift"], np.asarray(self.data["elasticity_position"].values)
+        supports = np.asarray(self.data["support_position"].values)
+        inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
+        return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), inside)
+
+    def with_elasticity(self, curve: Elasticity) -> Run:
+        """The run with the line's elasticity in its data: who shows or judges it reads it there."""
+        words = {"units": "m", "long_name": "uplift of the contact wire under a static force"}
+        place = ("elasticity_position", curve.position, {"units": "m", "long_name": "place of that force"})
+        variable = ("elasticity_position", curve.uplift, words | {"force": curve.force})
+        data = self.without_elasticity().data.assign(elasticity_uplift=variable)
+        return Run(data.assign_coords(elasticity_position=place), self.wall_s)
+
+    def without_elasticity(self) -> Run:
+        """The run with its histories alone."""
+        names = ["elasticity_uplift", "elasticity_position"]
+        return Run(self.data.drop_vars(names, errors="ignore"), self.wall_s)
 
     def window(self, pantograph: int, spans: Sequence[int] | None = None) -> NDArray[np.bool_]:
         """Shape (times,): when a pantograph (from 0) is inside the given spans.
@@ -194,8 +220,28 @@ class Run:
         numbers = self._numbers(spans)
         for i in range(self.data.sizes["pantograph"] if self.partial else 0):
             self.window(i, numbers)
-        supports = sorted({s for n in numbers for s in (n - 1, n)})
-        return float(self.data["support_uplift"].values[supports].max())
+        return max(self.uplift_by_support(numbers).values())
+
+    def uplift_by_support(self, spans: Sequence[int] | None = None) -> dict[int, float]:
+        """[m] largest uplift in the whole run, by the number (from 1) of each support of the given spans.
+
+        spans : numbers of spans, from 1; unset: the evaluated ones
+
+        Raises InputError for spans that the line does not have.
+        """
+        supports = sorted({s for n in self._numbers(spans) for s in (n, n + 1)})
+        largest = self.data["support_uplift"].values.max(axis=1)
+        return {s: float(largest[s - 1]) for s in supports}
+
+    @property
+    def slackened_droppers(self) -> NDArray[np.int64]:
+        """Numbers (from 0) of the droppers that went slack at any time of the run."""
+        return np.flatnonzero((self.data["dropper_force"].values <= 0).any(axis=1))
+
+    @property
+    def largest_dropper_force(self) -> float:
+        """[N] of any dropper at any time of the run; 0 for a line without droppers."""
+        return float(self.data["dropper_force"].values.max(initial=0.0))
 
     @property
     def has_energy(self) -> bool:
@@ -217,7 +263,8 @@ class Run:
         """Key figures in display units, ready for JSON."""
         simulated = float(self.time[-1])
         names = [str(name) for name in self.data["pantograph"].values]
-        figures = self.figures(filter)
+        figures, curve = self.figures(filter), self.elasticity
+        uplift = self.uplift_by_support() if self.reached else {}
         return ({"partial": self.partial.as_dict()} if self.partial else {}) | {
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
@@ -228,7 +275,12 @@ class Run:
                 s.as_dict() if s else ForceStatistics.none_as_dict(name)
                 for s, name in zip(figures, names, strict=True)
             ],
+            "governing_pantograph": governing(self.figures(filter)),
             "max_support_uplift_mm": 1e3 * self.largest_support_uplift() if self.reached else None,
+            "support_uplift_mm": {str(n): 1e3 * z for n, z in uplift.items()},
+            "slack_droppers": self.slackened_droppers.size,
+            "largest_dropper_force_N": self.largest_dropper_force,
+            "elasticity_non_uniformity_percent": 100 * curve.non_uniformity if curve else None,
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
@@ -245,11 +297,11 @@ class Run:
             sealed.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
         return Path(path)
 
-    def plot_contact_force(self, ax: Axes | None = None) -> Axes:
+    def plot_contact_force(self, ax: Axes | None = None, filter: FilterKind = "causal") -> Axes:
         """Contact force along the line. See :func:`catenary_fe.views.plot_contact_force`."""
         from catenary_fe.views import plot_contact_force
 
-        return plot_contact_force(self, ax=ax)
+        return plot_contact_force(self, filter=filter, ax=ax)
 
     def plot_support_uplift(self, ax: Axes | None = None) -> Axes:
         """Uplift at the supports. See :func:`catenary_fe.views.plot_support_uplift`."""

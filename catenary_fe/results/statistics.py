@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +13,24 @@ from catenary_fe.results.signal import FilterKind, band_pass, low_pass
 from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
+LONG_LOSS = 5e-3  # [s] shorter losses make no arc that EN 50317 counts (recalled)
+
+
+_SHOWN: dict[str, tuple[str, int]] = {  # names in display units, with what they are multiplied by
+    "mean_N": ("mean", 1),
+    "std_N": ("std", 1),
+    "std_0_5_Hz_N": ("std_0_5", 1),
+    "std_5_20_Hz_N": ("std_5_20", 1),
+    "statistical_max_N": ("statistical_max", 1),
+    "statistical_min_N": ("statistical_min", 1),
+    "max_N": ("max", 1),
+    "min_N": ("min", 1),
+    "contact_loss_percent": ("contact_loss", 100),
+    "contact_loss_over_5_ms_percent": ("long_contact_loss", 100),
+    "losses_over_5_ms": ("long_losses", 1),
+    "longest_loss_ms": ("longest_loss", 1000),
+    "contact_point_range_mm": ("contact_point_range", 1000),
+}
 
 
 @changed_by_copy
@@ -22,7 +42,10 @@ class ForceStatistics:
     std_0_5, std_5_20 : [N] standard deviation between 0 and 5 Hz, and between 5 and 20 Hz
     statistical_max, statistical_min : [N] mean ± 3 std
     max, min : [N] actual extremes of the filtered force
-    contact_loss : share of the time without contact, of the unfiltered force
+    contact_loss : share of the time at which the unfiltered force is 0, however short each loss is
+    long_contact_loss : share of the time in losses longer than 5 ms, likewise; this is what is judged
+    long_losses : number of these
+    longest_loss : [s] of the longest loss, be it a long one or not
     contact_point_range : [m] between highest and lowest point of contact
     filter : which low-pass was used
     """
@@ -37,38 +60,38 @@ class ForceStatistics:
     max: float
     min: float
     contact_loss: float
+    long_contact_loss: float
+    long_losses: int
+    longest_loss: float
     contact_point_range: float
     filter: FilterKind
 
     def as_dict(self) -> dict[str, float | str]:
         """In display units, ready for JSON."""
-        return {
-            "name": self.pantograph,
-            "mean_N": self.mean,
-            "std_N": self.std,
-            "std_0_5_Hz_N": self.std_0_5,
-            "std_5_20_Hz_N": self.std_5_20,
-            "statistical_max_N": self.statistical_max,
-            "statistical_min_N": self.statistical_min,
-            "max_N": self.max,
-            "min_N": self.min,
-            "contact_loss_percent": 100 * self.contact_loss,
-            "contact_point_range_mm": 1e3 * self.contact_point_range,
+        values = {name: factor * getattr(self, own) for name, (own, factor) in _SHOWN.items()}
+        return {"name": self.pantograph} | values
+
+    @classmethod
+    def from_dict(cls, record: Mapping[str, Any], filter: FilterKind) -> ForceStatistics:
+        """What :meth:`as_dict` gave, other entries left out; ``filter``: which low-pass was used."""
+        values: dict[str, Any] = {
+            own: record[name] if factor == 1 else record[name] / factor
+            for name, (own, factor) in _SHOWN.items()
         }
+        return cls(pantograph=record["name"], filter=filter, **values)
 
     @classmethod
     def none_as_dict(cls, pantograph: str) -> dict[str, float | str | None]:
         """As :meth:`as_dict`, with nothing in it: of spans that were not passed."""
-        names = [f.name for f in fields(cls) if f.name not in ("pantograph", "filter")]
-        empty = cls(pantograph=pantograph, filter="causal", **dict.fromkeys(names, float("nan")))
-        return dict.fromkeys(empty.as_dict()) | {"name": pantograph}
+        return {"name": pantograph, **dict.fromkeys(_SHOWN)}
 
     def __str__(self) -> str:
         return (
             f"{self.pantograph}: mean {self.mean:.1f} N, standard deviation {self.std:.1f} N, "
             f"statistical maximum {self.statistical_max:.1f} N and minimum {self.statistical_min:.1f} N, "
             f"actual maximum {self.max:.1f} N and minimum {self.min:.1f} N, "
-            f"contact loss {100 * self.contact_loss:.2f} %"
+            f"contact loss {100 * self.contact_loss:.2f} %, {100 * self.long_contact_loss:.2f} % in"
+            f" {self.long_losses} losses longer than 5 ms, the longest {1e3 * self.longest_loss:g} ms"
         )
 
 
@@ -102,6 +125,37 @@ def force_statistics(
         max=float(filtered.max()),
         min=float(filtered.min()),
         contact_loss=float((force[inside] <= 0).mean()),
+        **_long_losses(force <= 0, inside, step),
         contact_point_range=float(np.ptp(height[inside])),
         filter=filter,
     )
+
+
+def governing(
+    figures: Sequence[ForceStatistics | None], excess: Mapping[str, float] | None = None
+) -> str | None:
+    """Name of the pantograph whose figures decide on the line; None where there are no figures.
+
+    excess : by name, how many times its limit the criterion is that a pantograph misses by most
+
+    It is the one that misses a limit by most; where none misses any, the one whose standard deviation is the
+    largest share of its mean force, which every power system limits.
+    """
+    known = [s for s in figures if s]
+    if not known:
+        return None
+    over = excess or {}
+    worst = max(known, key=lambda s: (over.get(s.pantograph, 0.0), s.std / max(s.mean, 1e-9)))
+    return worst.pantograph
+
+
+def _long_losses(lost: NDArray[np.bool_], inside: NDArray[np.bool_], step: float) -> dict[str, Any]:
+    """Of the losses that reach into the window: those that last; each sample stands for one step."""
+    edges = np.flatnonzero(np.diff(lost, prepend=False, append=False))
+    losses = [(a, b) for a, b in edges.reshape(-1, 2) if inside[a:b].any()]
+    long = [(a, b) for a, b in losses if (b - a) * step > LONG_LOSS * (1 + 1e-9)]
+    return {
+        "long_contact_loss": float(sum(inside[a:b].sum() for a, b in long) / inside.sum()),
+        "long_losses": len(long),
+        "longest_loss": float(max((b - a for a, b in losses), default=0) * step),
+    }

@@ -71,10 +71,12 @@ def layout_warnings(catenary: Catenary) -> list[str]:
                 f"{name}: the tension stretches the wire by {100 * strain:.2g} %, more than 1 %: EA ="
                 f" {wire.axial_stiffness:g} N looks too small"
             )
-    for i, support in enumerate(catenary.supports[1:-1], start=2):
-        if support.steady_arm is None:
-            warnings.append(f"support {i} has no steady arm: the contact wire is free to sag there")
-            break
+    bare = [n for n, s in enumerate(catenary.supports[1:-1], start=2) if s.steady_arm is None]
+    if bare:
+        warnings.append(
+            f"{_supports(bare)} no steady arm: nothing holds the contact wire's height there, it hangs on the"
+            " droppers beside; give a steady_arm in [support], unless that is meant"
+        )
     return warnings + _without_effect(catenary)
 
 
@@ -116,6 +118,17 @@ def _anchored(catenary: Catenary) -> list[str]:
         for name in inert
         if inner and all(getattr(s, name) != getattr(catenary.supports[i - 1], name) for s in inner)
     ]
+
+
+def _supports(numbers: list[int]) -> str:
+    """Supports that have something, in words: runs of numbers by their ends."""
+    parts, first = [], numbers[0]
+    for n, following in zip(numbers, [*numbers[1:], -1], strict=True):
+        if following != n + 1:
+            parts.append(f"{first} to {n}" if n > first else f"{n}")
+            first = following
+    several = len(numbers) > 1
+    return f"support{'s' if several else ''} {', '.join(parts)} {'have' if several else 'has'}"
 
 
 def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Range]]]:

@@ -54,7 +54,8 @@ def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Ax
     ax = new_axes(ax)
     for run, label, colour in zip(runs, labels, distinct(len(runs)), strict=True):
         x = run.data["support_position"].values[1:-1]
-        uplift = 1e3 * run.data["support_uplift"].values[1:-1].max(axis=1)
+        by_support = run.uplift_by_support(range(1, x.size + 2))
+        uplift = [1e3 * lift for lift in list(by_support.values())[1:-1]]
         ax.plot(x, uplift, "o-", color=colour, linewidth=0.8, markersize=5, label=label)
     ax.set_ylim(bottom=0)
     headroom(ax, 0.2)

@@ -21,7 +21,7 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     limit has an empty bar.
     """
     ax = new_axes(ax, (11.0, 1.2 + 0.32 * len(rows)))
-    shares = [limit_used(row, _mean(row, rows)) for row in rows]
+    shares = [row.used for row in rows]
     end = 100 * max([1.0, *(min(share, _LONGEST) for share in shares if share is not None)])
     for i, (row, share) in enumerate(zip(rows, shares, strict=True)):
         colour = _COLOURS[row.verdict]
@@ -44,29 +44,3 @@ def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None
     finish(ax, "share of the limit that is used (%)", "", heading)
     ax.grid(visible=False, axis="y")
     return ax
-
-
-def _mean(row: Criterion, rows: Sequence[Criterion]) -> float | None:
-    """The same pantograph's mean force, from which a figure of the force falls towards its lower limit."""
-    means = [r.value for r in rows if r.name == "mean force" and r.pantograph == row.pantograph]
-    return means[0] if means and row.relation == "above" else None
-
-
-def limit_used(row: Criterion, start: float | None = None) -> float | None:
-    """Share of the limit: 1 at the limit, more beyond it, infinite where nothing of it is left.
-
-    start : where a figure with a lower limit starts from; unset: the share is limit over value there
-
-    None where no limit is known.
-    """
-    if row.limit is None:
-        return None
-    if start is not None and start > row.limit:
-        return max(0.0, (start - row.value) / (start - row.limit))
-    if row.relation == "at most":
-        part, whole = row.value, row.limit
-    else:
-        part, whole = row.limit, row.value
-    if whole > 0:
-        return max(0.0, part / whole)
-    return float("inf") if row.passed is False else 0.0

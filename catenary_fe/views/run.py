@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from catenary_fe.results import ForceStatistics, Run
+from catenary_fe.results.signal import FilterKind
 from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import (
     DROPPER,
@@ -31,15 +32,15 @@ _NAMED = 12  # supports that a legend has room for
 
 
 @checked
-def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
+def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
     supports = run.data["support_position"].values
     mark_supports(ax, supports)
     mark_spans(ax, supports, run.evaluated_spans)
-    filtered = run.filtered_contact_force()
+    filtered = run.filtered_contact_force(filter)
     single = filtered.shape[0] == 1
-    figures, names = run.figures(), run.data["pantograph"].values
+    figures, names = run.figures(filter), run.data["pantograph"].values
     for i, (statistics, colour) in enumerate(zip(figures, distinct(len(figures)), strict=True)):
         x = run.data["position"].values[i]
         if single:
@@ -91,11 +92,12 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """
     uplift = 1e3 * run.data["support_uplift"].values
     inner = range(1, uplift.shape[0] - 1)
-    evaluated = [i for i in inner if {i, i + 1} & set(run.evaluated_spans)]
+    evaluated = [n - 1 for n in run.uplift_by_support() if n - 1 in inner]
     colours = dict.fromkeys(inner, OTHERS) | dict(zip(evaluated, sequence(len(evaluated)), strict=True))
     if ax is None:
         ax, bars = new_panels((11.0, 6.2), (3, 2))
-        _uplift_bars(bars, uplift.max(axis=1), colours)
+        by_support = run.uplift_by_support(range(1, uplift.shape[0]))
+        _uplift_bars(bars, {n: 1e3 * lift for n, lift in by_support.items() if n - 1 in inner}, colours)
     for i in sorted(inner, key=evaluated.__contains__):
         name = f"support {i + 1}: at most {uplift[i].max():.1f} mm" if i in evaluated else None
         if len(evaluated) > _NAMED and uplift[i].max() < uplift[evaluated].max():
@@ -110,11 +112,10 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     return note_failed(finish(ax, "time (s)", "uplift (mm)", title), run.failed_checks)
 
 
-def _uplift_bars(ax: Axes, largest: Floats, colours: dict[int, str]) -> None:
-    """The largest uplift [mm] of each support, in the colour of its curve."""
-    numbers = np.array([i + 1 for i in colours])
-    heights = largest[numbers - 1]
-    ax.bar(numbers, heights, color=list(colours.values()), width=0.75)
+def _uplift_bars(ax: Axes, largest: dict[int, float], colours: dict[int, str]) -> None:
+    """The largest uplift [mm] of each support by its number, in the colour of its curve."""
+    numbers, heights = np.array(list(largest)), np.array(list(largest.values()))
+    ax.bar(numbers, heights, color=[colours[n - 1] for n in largest], width=0.75)
     ax.set_xlim(numbers[0] - 0.6, numbers[-1] + 0.6)
     ax.set_ylim(0, 1.25 * max(heights.max(), 1e-6))
     ax.set_xticks(numbers[:: -(-numbers.size // 40)])
@@ -134,10 +135,10 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     low, high = forces.min(axis=1), forces.max(axis=1)
     ax.vlines(x, low, high, color=DROPPER, linewidth=2.0, label="range during the run")
     ax.plot(x, forces[:, 0], ".", color=PANTOGRAPHS[0], markersize=6, label="at the start")
-    slack = low <= 0
-    if slack.any():
+    slack = run.slackened_droppers
+    if slack.size:
         share = np.mean(forces[slack] <= 0) * 100
-        name = f"went slack: {slack.sum()} of {x.size}, {share:.1f} % of the time"
+        name = f"went slack: {slack.size} of {x.size}, {share:.1f} % of the time"
         ax.plot(x[slack], low[slack], "v", color=PANTOGRAPHS[1], markersize=5, label=name)
     ax.legend(loc="upper right", fontsize=8, ncols=2, framealpha=0.9)
     headroom(ax, 0.18)

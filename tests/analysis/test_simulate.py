@@ -203,15 +203,20 @@ def test_warnings_name_rule_and_both_numbers(reference, reference_shape, pantogr
     assert "324 km/h is 0.739 of the contact wire's wave speed, 438 km/h; the rule is at most 0.7" in fast
     assert "2 spans" not in fast
     (late,) = warnings_of(reference_shape, pantograph, start=200.0)
-    assert "only 1 spans lie between" in late
+    assert "the start at 200 m is only 40 m before span 5, the first evaluated one; 2 spans let" in late
     assert any("time step 5 ms" in w for w in warnings_of(reference_shape, pantograph, step=5e-3))
     light = reference.replace(contact_wire=reference.contact_wire.replace(tension=900.0))
     assert "looks like kN" in cf.layout_warnings(light)[0]
     bare = reference.replace(supports=(cf.Support(),) * 11)
-    assert "support 2 has no steady arm" in cf.layout_warnings(bare)[0]
+    assert "supports 2 to 10 have no steady arm" in cf.layout_warnings(bare)[0]
+    three = (*reference.supports[:2], cf.Support(), *reference.supports[3:5], cf.Support(), cf.Support())
+    some = reference.replace(supports=(*three, *reference.supports[7:]))
+    assert "supports 3, 6 to 7 have no steady arm" in cf.layout_warnings(some)[0]
+    one = reference.replace(supports=(*reference.supports[:2], cf.Support(), *reference.supports[3:]))
+    assert "support 3 has no steady arm" in cf.layout_warnings(one)[0]
 
 
 def test_warnings_travel_with_the_result(short_shape, pantograph):
     run = cf.simulate(short_shape, [pantograph], speed=70.0, positions=[65.0])
-    assert any("spans lie between the start and the evaluated" in w for w in run.warnings)
+    assert any("the start at 65 m is only 55 m before span 3" in w for w in run.warnings)
     assert run.summary()["warnings"] == list(run.warnings)

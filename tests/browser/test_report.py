@@ -14,11 +14,10 @@ INJECTION = 'line </script><script>window.injected = 1</script><img src="http://
 
 @pytest.fixture(scope="module")
 def page(short_run, short_shape, tmp_path_factory):
-    curve = cf.elasticity(short_shape, points_per_span=4)
-    data = short_run.data.copy()
+    data = short_run.with_elasticity(cf.elasticity(short_shape, points_per_span=4)).data
     data.attrs = data.attrs | {"title": INJECTION}
     path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(report_page(cf.Run(data), short_shape, curve), encoding="utf-8")
+    path.write_text(report_page(cf.Run(data), short_shape), encoding="utf-8")
     return path
 
 

@@ -113,22 +113,28 @@ PANTOGRAPH = ["--pantograph", "EN 50318:2002"]
 SLOW = [*PANTOGRAPH, "--speed-kmh", 200, "--time-step-ms", 2]
 
 
-def test_criteria_that_are_kept(capsys, layout, tmp_path):
+def test_criteria_that_are_kept(capsys, layout, tmp_path, monkeypatch):
     """At 200 km/h 120 N suit DC 3 kV (98 to 149 N), not AC (79 to 109 N)."""
     out_dir = tmp_path / "out"
-    code, out, err = call(
-        capsys, "run", layout, *SLOW, "--criteria", "dc 3 kv", "--json", "--quiet", "-o", out_dir
-    )
+    options = ["--criteria", "dc 3 kv", "--elasticity", "--json", "--quiet", "-o", out_dir]
+    code, out, err = call(capsys, "run", layout, *SLOW, *options)
     summary = json.loads(out)
     assert (code, err) == (0, "")
     assert {row["passed"] for row in summary["criteria"]} == {True, None}
     assert json.loads((out_dir / "summary.json").read_text()) == summary
     assert (out_dir / "criteria.png").stat().st_size > 10_000
     static = json.loads(call(capsys, "static", layout, "--json", "--quiet")[1])
-    assert summary["criteria"][-1]["value"] == pytest.approx(100 * static["non_uniformity"])
+    found = summary["elasticity_non_uniformity_percent"]
+    assert summary["criteria"][-1]["value"] == found == pytest.approx(100 * static["non_uniformity"])
+    monkeypatch.setattr("catenary_fe.analysis.elasticity", None)  # what was computed is not computed again
+    shown = "catenary_fe.views.report.report_page"
+    monkeypatch.setattr(shown, lambda run, *_, **__: repr(100 * run.elasticity.non_uniformity))
+    assert call(capsys, "report", out_dir)[0] == 0
+    assert (out_dir / "report.html").read_text(encoding="utf-8") == repr(found)
 
 
-def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
+def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path, monkeypatch):
+    monkeypatch.setattr("catenary_fe.analysis.elasticity", None)  # no limit judges it
     text = Path(layout).read_text().replace("stiffness = 300.0", "stiffness = 300.0\nuplift_room = 0.3")
     Path(layout).write_text(text)
     out_dir = tmp_path / "out"
@@ -137,7 +143,13 @@ def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
     assert "missed: mean force: 11" in err
     assert "must be at most 108.8 N" in err
     text = " ".join(out.split())
-    for said in ("criteria, AC", "missed", "passed", "not judged", "(recalled)", "at most 300.0 mm"):
+    for said in (
+        "AC: 1 of 9 criteria missed: mean force",
+        "missed",
+        "passed",
+        "(recalled)",
+        "at most 300.0 mm",
+    ):
         assert said in text
     written = json.loads((out_dir / "summary.json").read_text())
     assert [r["name"] for r in written["criteria"] if r["passed"] is False] == ["mean force"]

@@ -9,6 +9,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe import views
 from catenary_fe.cli import main
+from catenary_fe.cli.sweep_verdicts import Verdict, in_words
 from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 
 FAILED = "end reflection"  # a slow train on three spans
@@ -45,8 +46,8 @@ def test_summary_and_terminal(capsys, layout, folders):
                  "linearised", "--time-step-ms", "2"]  # fmt: skip
     code, out, err = call(capsys, *arguments)
     assert code == 0
-    assert f"checks: 1 of {len(summary['checks'])} failed" in out
-    (row,) = [line for line in out.splitlines() if f" {FAILED} " in line]
+    assert f"1 of {len(summary['checks'])} checks failed: {FAILED}" in out
+    (row,) = [line for line in out.splitlines() if f"│ {FAILED} " in line]
     assert "at most 10 %" in row and "failed" in row
     assert f"warning: check failed: {FAILED} = " in err
     code, out, _ = call(capsys, *arguments, "--json")
@@ -78,14 +79,58 @@ def test_comparison(capsys, folders, tmp_path):
 
 
 def test_sweep_table(capsys, layout, tmp_path):
-    code, out, _ = call(capsys, "sweep", layout, "--speed-kmh", "60", "250", "--pantograph", "EN 50318:2002",
-                        "--time-step-ms", "2", "-o", tmp_path / "sweep")  # fmt: skip
-    assert code == 0
-    assert "checks failed" in out
+    """115 N are too much for AC at 60 km/h, not at 250 km/h; cases are run once, whatever judges them."""
+    arguments = ["sweep", layout, "--speed-kmh", "60", "250", "--pantograph", "EN 50318:2002",
+                 "--time-step-ms", "2", "-o", tmp_path / "sweep"]  # fmt: skip
+    code, out, err = call(capsys, *arguments, "--criteria", "ac")
+    assert code == 1
+    words = " ".join(out.split())
+    assert f"checks failed in 1 of 2 cases: {FAILED} in 1" in words
+    assert "criteria of AC missed in 1 of 2 cases: mean force in 1" in words
+    assert "warnings in 2 of 2 cases" in words
+    assert "missed: criteria of AC in 1 of 2 cases: mean force in 1" in err
+    assert "warning: 2 of 2 cases: the start at 10 m is only" in err
     with (tmp_path / "sweep" / "sweep.csv").open() as file:
         slow, fast = csv.DictReader(file)
-    assert slow["checks_failed"] == FAILED
+    assert (slow["checks_failed"], slow["criteria_missed"]) == (FAILED, "mean force")
+    assert slow["warnings"] == "1"
     assert FAILED not in fast["checks_failed"]
+    assert fast["criteria_missed"] == ""
+    with (tmp_path / "sweep" / "remarks.csv").open() as file:
+        remarks = [(row["speed_kmh"], row["kind"], row["text"]) for row in csv.DictReader(file)]
+    assert [kind for speed, kind, _ in remarks if speed == "60.0"] == [
+        "check failed", "criterion missed", "warning"
+    ]  # fmt: skip
+    assert "must be at most 91.7 N" in remarks[1][2]
+    begin = sorted((tmp_path / "sweep" / "cases").iterdir())
+    code, out, err = call(capsys, *arguments, "--criteria", "DC 3 kV")
+    assert (code, "missed: criteria of DC 3 kV in 2 of 2 cases: mean force in 2" in err) == (1, True)
+    with (tmp_path / "sweep" / "sweep.csv").open() as file:
+        assert [row["criteria_missed"] for row in csv.DictReader(file)] == ["mean force"] * 2
+    code, out, _ = call(capsys, *arguments)
+    assert (code, "criteria" in out) == (0, False)
+    assert sorted((tmp_path / "sweep" / "cases").iterdir()) == begin
+
+
+def test_a_sweep_in_words():
+    def row(name, passed):
+        return cf.Criterion(name=name, value=1.0, limit=2.0 if passed else 0.5, unit="N", source="")
+
+    good = Verdict({}, [row("σ", True)])
+    bad = Verdict({}, [row("σ", False), row("speed", False)], {"start transient": "start transient = 30 %"})
+    warned = Verdict({}, [row("σ", False)], {}, ["short line", "short line"])
+    broken = Verdict({}, error="no line")
+    assert in_words([good, good], "AC") == [
+        "all checks passed", "all criteria of AC with a known limit met", "no warning"
+    ]  # fmt: skip
+    assert in_words([good, bad, warned, broken], "AC") == [
+        "1 of 4 cases did not run",
+        "checks failed in 1 of 3 cases: start transient in 1",
+        "criteria of AC missed in 2 of 3 cases: σ in 2, speed in 1",
+        "warnings in 1 of 3 cases",
+    ]
+    assert in_words([broken], "AC") == ["1 of 1 cases did not run"]
+    assert len(in_words([good], None)) == 2
 
 
 def test_pictures(folders):

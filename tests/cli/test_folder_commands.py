@@ -10,6 +10,8 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.cli import main
+from catenary_fe.cli.compare import common_filter
+from catenary_fe.cli.criteria import kept_evaluation
 
 PANTOGRAPH = (
     'name = "mine"\nuplift_force = 110.0\nstages = [{ mass = 9.0, stiffness = 60.0, damping = 80.0 }]\n'
@@ -77,6 +79,8 @@ def test_rerun_gives_the_same(capsys, folder, tmp_path):
     assert (code, err, result["warnings"]) == (0, "", [])
     assert result["identical"] is True
     assert (tmp_path / "again" / "run.nc").read_bytes() == (folder / "run.nc").read_bytes()
+    before, after = (json.loads((f / "summary.json").read_text()) for f in (folder, tmp_path / "again"))
+    assert {k for k in before if before[k] != after[k]} <= {"wall_s", "real_time_factor"}
     assert {p.name for p in (tmp_path / "again").iterdir()} == {p.name for p in folder.iterdir()}
 
 
@@ -355,3 +359,25 @@ def test_what_is_told_of_other_numbers_and_other_places(folder, tmp_path):
     assert [(d.name, d.values) for d in input_differences(runs)] == [
         ("catenary: spans: pre sag", ("0.02, 0", "0.02, 0, in other places"))
     ]
+
+
+def test_a_run_is_shown_as_it_was_evaluated(tmp_path):
+    """Its summary says how; a summary that is not there, or says something else, means the defaults."""
+    assert kept_evaluation(tmp_path) == ("causal", None)
+    (tmp_path / "summary.json").write_text('{"filter": "zero-phase", "criteria_system": "DC 3 kV"}')
+    assert kept_evaluation(tmp_path) == kept_evaluation(tmp_path / "run.nc") == ("zero-phase", "DC 3 kV")
+    (tmp_path / "summary.json").write_text('{"filter": "none", "criteria_system": ["AC"]}')
+    assert kept_evaluation(tmp_path) == ("causal", None)
+
+
+def test_runs_are_compared_with_one_filter(tmp_path):
+    for name, kind in (("a", "zero-phase"), ("b", "zero-phase"), ("c", "causal")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "summary.json").write_text(f'{{"filter": "{kind}"}}')
+    a, b, c = (str(tmp_path / name) for name in "abc")
+    assert common_filter((a, b), ["a", "b"], None) == ("zero-phase", [])
+    kind, (said,) = common_filter((a, c), ["a", "c"], None)
+    assert (kind, said) == (
+        "causal", "a: its own summary has figures of the zero-phase filter, here they are of the causal one"
+    )  # fmt: skip
+    assert [text[0] for text in common_filter((a, b), ["a", "b"], "causal")[1]] == ["a", "b"]

@@ -66,6 +66,8 @@ TARGETS = {  # module: tests that are quick and touch it
         "tests/results/test_pantograph_balances.py",
         "tests/results/test_guard_values.py",
     ],
+    "catenary_fe.results.check": ["tests/results/test_guard_values.py"],
+    "catenary_fe.analysis.linearised.doubts": ["tests/analysis/test_doubts.py"],
     "catenary_fe.analysis.linearised.forces": ["tests/analysis/test_forces_of_a_step.py"]
     + [
         f"{_CONTACT}::{name}"

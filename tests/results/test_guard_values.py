@@ -7,7 +7,7 @@ import pytest
 from made_runs import HEIGHT, made_line, made_pantograph, made_run
 
 import catenary_fe as cf
-from catenary_fe.results.guards import Check
+from catenary_fe.results.check import Check, checks_in_words
 
 TWO = (made_pantograph(name="first"), made_pantograph(name="second"))
 ELASTIC = cf.ElasticPantograph(force=100.0)
@@ -37,6 +37,11 @@ def test_a_check_in_words():
     check = depth(3.0, "at least", 2.0, "")
     assert str(check) == "depth = 3, must be at least 2: why"
     assert str(depth(3.0)) == "depth = 3 mm, must be at most 10 mm: why"
+
+
+def test_checks_in_words():
+    assert checks_in_words([depth(3.0), depth(4.0)]) == "all 2 checks passed"
+    assert checks_in_words([depth(3.0), depth(40.0), depth(11.0)]) == "2 of 3 checks failed: depth, depth"
 
 
 @pytest.mark.parametrize(
@@ -87,8 +92,13 @@ def test_penetration_is_of_the_deepest_head():
     depths[0, 0, 700], depths[1, 0, 900] = 0.004, 0.0125
     for pantographs in (TWO, TWO[::-1], (ELASTIC, TWO[0])):
         run = made_run(None, *pantographs, start=(5.0, 5.0), mass_height=HEIGHT + depths)
-        assert check(run, "penetration").value == pytest.approx(12.5)
-        assert not check(run, "penetration").passed
+        found = check(run, "penetration")
+        assert found.value == pytest.approx(12.5)
+        assert not found.passed
+        deepest = run.data["pantograph"].values[-1 if pantographs[0] is ELASTIC else depths.argmax() // 2001]
+        assert found.text.startswith(
+            f"so deep the head of {deepest} goes into the wire at 95.0 m (span 2), under 100 N; raise"
+        )
 
 
 def energies(energy, driven, lost):
@@ -122,15 +132,26 @@ def test_no_work_at_all_is_balanced():
 
 def tensions(by_wire):
     changes = np.array(list(by_wire.values()), dtype=float)
-    return {"tension_change": (("wire", "tension_time"), changes), "wire": ("wire", list(by_wire))}
+    spans = np.broadcast_to(2 + np.arange(len(changes))[:, None], changes.shape)
+    return {
+        "tension_change": (("wire", "tension_time"), changes),
+        "tension_span": (("wire", "tension_time"), spans),
+        "tension_time": ("tension_time", 0.05 * np.arange(changes.shape[1])),
+        "wire": ("wire", list(by_wire)),
+    }
 
 
 def test_tension_drift_is_of_the_wires_that_weights_hold():
     wires = {"contact_wire": [0, 0.004], "messenger_wire": [0.012, 0], "stitch_wire_2": [0, 0.06]}
-    assert check(made_run(extra=tensions(wires)), "tension drift").value == pytest.approx(1.2)
+    drift = check(made_run(extra=tensions(wires)), "tension drift")
+    assert drift.value == pytest.approx(1.2)
+    assert drift.text.startswith(
+        "change of the messenger wire's tension in span 3 since the start, at 0.00 s;"
+    )
     worse = wires | {"contact_wire": [0, 0.031]}
     assert str(check(made_run(extra=tensions(worse)), "tension drift")).startswith(
-        "tension drift = 3.1 %, must be at most 3 %: "
+        "tension drift = 3.1 %, must be at most 3 %: change of the contact wire's tension in span 2 since the"
+        " start, at 0.05 s; "
     )
 
 
@@ -197,12 +218,13 @@ def test_the_tone_lies_near_the_frequency_of_passing(of_frequency, heard):
 ENDING = made_line((50.0,) * 5 + (60.0,))  # spans 3 and 4 are evaluated, until 200 m
 
 
-def lifted(line=ENDING, *, last_but_one, at, inside=0.05, start=(5.0,), **others):
+def lifted(line=ENDING, *, last_but_one, at, inside=0.05, start=(5.0,), run=False, **others):
     """The last support but one moves at one time; those of the evaluated spans once, by ``inside``."""
     uplift = np.zeros((len(line.supports), 2001))
     uplift[3, 10], uplift[-2, round(at / 2e-3)], uplift[-1] = inside, last_but_one, 9.9
     pantographs = TWO[: len(start)]
-    return check(made_run(line, *pantographs, start=start, support_uplift=uplift, **others), "end reflection")
+    made = made_run(line, *pantographs, start=start, support_uplift=uplift, **others)
+    return made if run else check(made, "end reflection")
 
 
 @pytest.mark.parametrize(
@@ -303,3 +325,40 @@ def test_droppers_are_slack_for_a_share_of_the_evaluated_time():
 
 def test_spans_without_droppers_have_none_that_is_slack():
     assert check(made_run(made_line(dropper_every=60.0)), "slack droppers") is None
+
+
+def remedy(run, name):
+    found = check(run, name)
+    assert not found.passed
+    return found.text
+
+
+def test_checks_name_what_it_is_and_what_to_take_instead():
+    """And a bound in a remedy is rounded to the side that keeps it."""
+    tone = made_run(mesh=MESH | {"contact_wire_element": 2.6}, speed=26.0, times=4001)
+    assert "take elements of at most 1.3 m" in remedy(tone, "element-passing frequency")
+    fast = made_run(mesh=MESH, speed=83.0, step=4e-3, times=1001)
+    assert "moves 0.33 m a step, over elements of 0.5 m; take a time step of at most 3 ms" in remedy(
+        fast, "steps in an element"
+    )
+    heads = [made_pantograph((mass, 100.0, 0.0), name=name) for name, mass in (("a", 2.0), ("b", 1.0))]
+    coarse = made_run(None, *heads, start=(5.0, 6.0))
+    said = remedy(coarse, "time steps in a period")
+    assert "of 35.6 Hz, the resonance of the head of b on its contact spring; take a time step of" in said
+    assert said.endswith("at most 1.4 ms")
+    spans = remedy(swelling([50, 10, 13, 8, 30, 50], evaluated_spans=(2, 3, 4)), "start transient")
+    assert spans.startswith("so far σ of first in the equal spans 3 and 4 differs, ")
+    forces = np.full((24, 2001), 0.5)
+    forces[9:13], forces[14, :501] = 0.0, 0.0
+    assert "longest dropper 2 of span 3 with 100 %" in remedy(
+        made_run(dropper_force=forces), "slack droppers"
+    )
+    end = check(lifted(last_but_one=0.02, at=0.5, run=True), "end reflection")
+    assert "add spans behind span 4" in end.text
+
+
+def test_the_pantograph_that_is_out_of_balance_is_named():
+    force = np.full((2, 2001), 100.0)
+    force[1] = 103.0
+    run = made_run(None, *TWO, start=(5.0, 6.0), contact_force=force)
+    assert remedy(run, "force balance").startswith("share of the uplift force of second by which")

@@ -70,7 +70,8 @@ def test_summary_is_json_with_the_keys_that_were_promised(short_run):
     } <= set(summary)  # fmt: skip
     assert {
         "name", "mean_N", "std_N", "std_0_5_Hz_N", "std_5_20_Hz_N", "statistical_max_N", "statistical_min_N",
-        "max_N", "min_N", "contact_loss_percent", "contact_point_range_mm",
+        "max_N", "min_N", "contact_loss_percent", "contact_loss_over_5_ms_percent", "losses_over_5_ms",
+        "longest_loss_ms", "contact_point_range_mm",
     } == set(summary["pantographs"][0])  # fmt: skip
 
 

@@ -101,6 +101,8 @@ def test_uplift_is_of_the_supports_around_the_spans():
     assert run.largest_support_uplift([2]) == 0.035
     assert run.largest_support_uplift([6]) == 0.07
     assert run.largest_support_uplift([1, 4]) == 0.05
+    assert run.uplift_by_support() == {3: 0.03, 4: 0.04, 5: 0.05}
+    assert run.uplift_by_support([1, 6]) == {1: 0.01, 2: 0.035, 6: 0.06, 7: 0.07}
 
 
 def test_figures_are_of_the_filtered_force_in_the_spans():
@@ -148,14 +150,18 @@ def test_a_summary_is_in_display_units():
     summary = run.summary("zero-phase")
     assert list(summary) == [
         "speed_kmh", "method", "evaluated_spans", "dropper_lengths_given", "filter", "pantographs",
-        "max_support_uplift_mm", "simulated_s", "wall_s", "real_time_factor", "checks", "checks_failed",
-        "warnings",
+        "governing_pantograph", "max_support_uplift_mm", "support_uplift_mm", "slack_droppers",
+        "largest_dropper_force_N", "elasticity_non_uniformity_percent", "simulated_s", "wall_s",
+        "real_time_factor", "checks", "checks_failed", "warnings",
     ]  # fmt: skip
     assert (summary["speed_kmh"], summary["method"], summary["filter"]) == (200.0, "nonlinear", "zero-phase")
     assert summary["evaluated_spans"] == [3, 4]
     assert [p["name"] for p in summary["pantographs"]] == ["first", "second"]
     assert summary["pantographs"][1] == run.contact_force_statistics(filter="zero-phase")[1].as_dict()
     assert summary["max_support_uplift_mm"] == pytest.approx(40)
+    assert summary["support_uplift_mm"] == {"3": 0.0, "4": pytest.approx(40), "5": 0.0}
+    assert (summary["slack_droppers"], summary["largest_dropper_force_N"]) == (0, 50.0)
+    assert summary["elasticity_non_uniformity_percent"] is None
     assert (summary["simulated_s"], summary["wall_s"]) == (4.0, 0.5)
     assert summary["real_time_factor"] == pytest.approx(8.0)
     assert summary["checks"] == [check.as_dict() for check in run.checks]
@@ -170,7 +176,8 @@ def test_a_summary_without_a_time_of_computing():
 def test_a_summary_of_a_partial_run_begins_with_why():
     summary = made_run(None, *TWO, start=(5.0, 4.9), times=1951, partial=partial()).summary()
     assert next(iter(summary.items())) == ("partial", STOPPED)
-    assert summary["max_support_uplift_mm"] is None
+    assert (summary["max_support_uplift_mm"], summary["support_uplift_mm"]) == (None, {})
+    assert summary["governing_pantograph"] == TWO[0].name
     first, second = summary["pantographs"]
     assert first["mean_N"] == pytest.approx(100)
     assert second == dict.fromkeys(first) | {"name": "second"}
@@ -183,6 +190,33 @@ def test_failed_checks_are_warned_of():
     assert run.warnings == ("slow", f"check failed: {failed}")
     assert run.summary()["checks_failed"] == ["slack droppers"]
     assert run.summary()["warnings"] == list(run.warnings)
+
+
+def test_elasticity_is_kept_with_the_run(tmp_path):
+    """Once computed it is in the data, the file and the summary, and the histories are as they were."""
+    curve = cf.results.Elasticity(
+        np.array([100.0, 112.5, 150.0]), np.array([0.03, 0.05, 0.04]), 90.0, np.array([100.0, 150.0])
+    )
+    run = made_run(wall_s=2.0)
+    assert run.elasticity is None
+    held = run.with_elasticity(curve)
+    assert held.wall_s == 2.0
+    for each in (held, held.with_elasticity(curve), cf.load_run(held.save(tmp_path / "run.nc"))):
+        for name in ("position", "uplift", "support_position"):
+            assert np.array_equal(getattr(each.elasticity, name), getattr(curve, name)), name
+        assert each.elasticity.force == 90.0
+        assert each.summary()["elasticity_non_uniformity_percent"] == 100 * curve.non_uniformity
+    assert held.without_elasticity().data.identical(run.data)
+
+
+def test_droppers_that_went_slack():
+    forces = np.full((24, 2001), 0.5)
+    forces[2, 5], forces[4, 6], forces[7, 0] = 0.0, -1.0, 88.0
+    run = made_run(dropper_force=forces)
+    assert run.slackened_droppers.tolist() == [2, 4]
+    assert run.summary()["slack_droppers"] == 2
+    assert run.summary()["largest_dropper_force_N"] == run.largest_dropper_force == 88.0
+    assert made_run(made_line(dropper_every=60.0)).largest_dropper_force == 0.0
 
 
 def test_energy_that_is_missing():

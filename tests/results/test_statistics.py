@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from catenary_fe.results import ForceStatistics, band_pass, force_statistics, low_pass, spectrum
+from catenary_fe.results import ForceStatistics, band_pass, force_statistics, governing, low_pass, spectrum
 
 STEP = 1e-3
 T = np.arange(0, 20, STEP)
@@ -119,15 +119,62 @@ def test_a_faint_force_is_no_loss_of_contact():
 def test_numbers_by_name_in_display_units():
     s = ForceStatistics(
         pantograph="P", mean=120.0, std=30.0, std_0_5=10.0, std_5_20=20.0, statistical_max=210.0,
-        statistical_min=31.0, max=180.0, min=60.0, contact_loss=0.015, contact_point_range=0.0425,
-        filter="causal",
+        statistical_min=31.0, max=180.0, min=60.0, contact_loss=0.015, long_contact_loss=0.0125,
+        long_losses=2, longest_loss=0.008, contact_point_range=0.0425, filter="causal",
     )  # fmt: skip
+    assert ForceStatistics.from_dict(s.as_dict() | {"more": 1}, "causal") == s
     assert s.as_dict() == {
         "name": "P", "mean_N": 120.0, "std_N": 30.0, "std_0_5_Hz_N": 10.0, "std_5_20_Hz_N": 20.0,
         "statistical_max_N": 210.0, "statistical_min_N": 31.0, "max_N": 180.0, "min_N": 60.0,
-        "contact_loss_percent": pytest.approx(1.5), "contact_point_range_mm": pytest.approx(42.5),
+        "contact_loss_percent": pytest.approx(1.5), "contact_loss_over_5_ms_percent": pytest.approx(1.25),
+        "losses_over_5_ms": 2, "longest_loss_ms": pytest.approx(8.0),
+        "contact_point_range_mm": pytest.approx(42.5),
     }  # fmt: skip
     assert str(s) == (
         "P: mean 120.0 N, standard deviation 30.0 N, statistical maximum 210.0 N and minimum 31.0 N, actual"
-        " maximum 180.0 N and minimum 60.0 N, contact loss 1.50 %"
+        " maximum 180.0 N and minimum 60.0 N, contact loss 1.50 %, 1.25 % in 2 losses longer"
+        " than 5 ms, the longest 8 ms"
     )
+
+
+def losing(*spans, samples=2000, first=0, last=2000, step=STEP):
+    """A force that is lost from one sample to before another, evaluated from ``first`` to before ``last``."""
+    force, inside = np.full(samples, 100.0), np.zeros(samples, dtype=bool)
+    for a, b in spans:
+        force[a:b] = 0.0
+    inside[first:last] = True
+    s = force_statistics(name="x", force=force, height=force, inside=inside, step=step)
+    return s.contact_loss, s.long_contact_loss, s.long_losses, s.longest_loss
+
+
+def test_a_loss_is_long_above_5_ms():
+    """Each sample stands for a step of 1 ms; scattered ones are no loss, however many."""
+    assert losing() == (0, 0, 0, 0)
+    assert losing((10, 15)) == (5 / 2000, 0, 0, pytest.approx(0.005))
+    assert losing((10, 16)) == (6 / 2000, 6 / 2000, 1, pytest.approx(0.006))
+    scattered = [(n, n + 1) for n in range(100, 400, 2)]
+    assert losing(*scattered) == (150 / 2000, 0, 0, pytest.approx(0.001))
+    assert losing((0, 7), (30, 34), (1990, 2000)) == (21 / 2000, 17 / 2000, 2, pytest.approx(0.01))
+    assert losing((10, 12), step=2e-3)[1:] == (0, 0, pytest.approx(0.004))
+    assert losing((10, 13), step=2e-3)[1:] == (3 / 2000, 1, pytest.approx(0.006))
+
+
+def test_a_loss_counts_by_what_of_it_lies_in_the_window():
+    """Its length is that of the whole loss; one outside is none."""
+    assert losing((95, 103), first=100) == (3 / 1900, 3 / 1900, 1, pytest.approx(0.008))
+    assert losing((80, 100), (300, 302), first=100) == (2 / 1900, 0, 0, pytest.approx(0.002))
+
+
+def figures(name, mean, std):
+    record = dict.fromkeys(ForceStatistics.none_as_dict(name), 0.0)
+    return ForceStatistics.from_dict(record | {"name": name, "mean_N": mean, "std_N": std}, "causal")
+
+
+def test_the_pantograph_that_governs():
+    """By the limit missed by most, else by the larger share of σ; those without figures never."""
+    lead, trail = figures("lead", 150.0, 30.0), figures("trail", 100.0, 25.0)
+    assert governing([lead, trail]) == governing([None, trail, lead]) == "trail"
+    assert governing([lead, trail], {"lead": 1.01}) == "lead"
+    assert governing([lead, trail], {"lead": 1.01, "trail": 1.2}) == "trail"
+    assert governing([lead, None]) == "lead"
+    assert governing([None]) is None

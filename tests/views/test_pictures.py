@@ -42,7 +42,7 @@ def test_every_picture_can_be_saved(drawings, tmp_path):
 
 
 def test_a_bar_beyond_100_percent_misses_its_criterion(short_run):
-    rows = cf.criteria_rows(short_run, "AC", non_uniformity=0.4)
+    rows = cf.criteria_rows(short_run, "AC")
     ax = views.plot_criteria(rows, title="run")
     assert ax.get_xlabel().endswith("(%)")
     assert len(ax.patches) == len(rows)
@@ -69,6 +69,14 @@ def test_a_missed_lower_limit_of_zero_has_a_bar_beyond_100_percent():
     assert mean.get_width() == pytest.approx(100 / 1.2)
     assert minimum.get_width() == pytest.approx(105)
     assert (loss.get_width(), bool(loss.get_hatch())) == (200, True)
+
+
+def test_the_force_is_drawn_with_the_filter_of_its_figures(short_run):
+    ax = short_run.plot_contact_force(filter="zero-phase")
+    line = next(c for c in ax.lines if "0 to 20 Hz" in c.get_label())
+    assert line.get_ydata() == pytest.approx(short_run.filtered_contact_force("zero-phase")[0])
+    sigma = short_run.contact_force_statistics(filter="zero-phase")[0].std
+    assert f"σ {sigma:.1f} N" in ax.get_title(loc="left")
 
 
 def test_a_given_axes_is_drawn_on(short_run):

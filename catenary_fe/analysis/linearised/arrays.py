@@ -113,8 +113,7 @@ class Line(NamedTuple):
     yielding : columns of the inverse for the droppers
     links, bows : steady arms, inclined elements
     load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.linear_model.LinearModel`
-    supports, heights, tensions, rest : coordinates of heights at supports and of all nodes, of tensions, and
-        the tensions at rest
+    supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
     """
 
     first: Integers
@@ -136,7 +135,6 @@ class Line(NamedTuple):
     supports: Integers
     heights: Integers
     tensions: Integers
-    rest: Floats
 
 
 class Wires(NamedTuple):
@@ -195,8 +193,8 @@ class Records(NamedTuple):
     masses : (lanes, pantographs, coordinates, steps + 1)
     droppers : (lanes, droppers, steps + 1)
     supports : (lanes, contact wires * supports, steps + 1), uplift
-    share : (lanes, steps + 1), largest change of tension over the wire's tension
-    slack : (lanes, steps + 1), [m] largest shortening of a slack dropper
+    change, changed : (lanes, gaps), [N] largest change of a gap's tension, and the step at whose end it is
+    shortening, shortened : (lanes, droppers), [m] largest one of each dropper while slack, and likewise
     wire : (lanes, shapes, nodes of all wires), uplift at every ``every``-th step, 0: never
     """
 
@@ -205,8 +203,10 @@ class Records(NamedTuple):
     masses: Floats
     droppers: Floats
     supports: Floats
-    share: Floats
-    slack: Floats
+    change: Floats
+    changed: Integers
+    shortening: Floats
+    shortened: Integers
     wire: Floats
     every: int
 

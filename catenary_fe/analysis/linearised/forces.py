@@ -302,7 +302,7 @@ def meet(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, to:
                 break
         if not find_slack(scheme, line, wires, work, to.droppers[c, :, heads.step[c] + 1], c):
             break
-    to.slack[c, heads.step[c] + 1] = keep_slack(scheme, line, wires, work, c)
+    keep_slack(scheme, line, wires, work, to, c, heads.step[c] + 1)
     if not settled and change > UNSETTLED:
         work.force[c, :] = np.nan  # the run's end says so
 
@@ -331,18 +331,19 @@ def is_active(work: Work, c: int, i: int) -> bool:
 
 
 @compiled
-def keep_slack(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int) -> float:
-    """Take taut droppers off the list of active ones; the largest shortening [m] of the others."""
-    kept, largest = 0, 0.0
+def keep_slack(scheme: Scheme, line: Line, wires: Wires, work: Work, to: Records, c: int, n: int) -> None:
+    """Take taut droppers off the list of active ones; write down how far the others shorten in step n."""
+    kept = 0
     for a in range(work.active_count[c]):
         i = work.active[c, a]
         if work.slack[c, i] != 0.0:
             spring, _ = dropper_parts(scheme, line, wires, c, i)
-            largest = max(largest, -spring / line.k[i])
+            shorter = -spring / line.k[i]
+            if shorter > to.shortening[c, i]:
+                to.shortening[c, i], to.shortened[c, i] = shorter, n
             work.active[c, kept] = i
             kept += 1
     work.active_count[c] = kept
-    return largest
 
 
 @compiled
@@ -366,12 +367,12 @@ def record(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, t
         i = line.supports[s]
         if i >= 0:
             to.supports[c, s, n] = wires.q[i, c] + scheme.b * wires.x[i, c]
-    share = 0.0
     for s in range(line.tensions.size):
         i = line.tensions[s]
-        work.tension[c, s] = wires.q[i, c] + scheme.b * wires.x[i, c]
-        share = max(share, abs(work.tension[c, s]) / line.rest[s])
-    to.share[c, n] = share
+        tension = wires.q[i, c] + scheme.b * wires.x[i, c]
+        work.tension[c, s] = tension
+        if abs(tension) > to.change[c, s]:
+            to.change[c, s], to.changed[c, s] = abs(tension), n
     if to.every > 0 and n % to.every == 0:
         for node in range(line.heights.size):
             i = line.heights[node]

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 BLOCK = 250  # steps between looks at which lanes are free
 
 
@@ -72,7 +73,8 @@ class Lanes:
             head=np.zeros((lanes, j, m)),
             soft=np.zeros((lanes, j, m)),
         )
-        self.records = make_records(lanes, sizes, (line.k.size, line.supports.size, line.heights.size), every)
+        counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
+        self.records = make_records(lanes, sizes, counts, every)
 
     def load(self, lane: int, start: Start, steps: int) -> None:
         """Put a run at its start into a lane."""
@@ -106,9 +108,13 @@ class Lanes:
         """What a lane's run recorded."""
         return read_journey(self.records, self.heads, lane, start, steps, self._setup.scheme.h, shape)
 
-    def doubts(self, lane: int, steps: int) -> tuple[Floats, Floats]:
-        """Histories of the tension's change over the tension, and of the shortening of slack droppers [m]."""
-        return self.records.share[lane, : steps + 1], self.records.slack[lane, : steps + 1]
+    def tension_changes(self, lane: int) -> tuple[Floats, Integers]:
+        """[N], shape (gaps,): largest change of each gap's tension, and the steps at whose ends they are."""
+        return self.records.change[lane], self.records.changed[lane]
+
+    def shortenings(self, lane: int) -> tuple[Floats, Integers]:
+        """[m], shape (droppers,): largest shortening of each dropper while slack, and likewise the steps."""
+        return self.records.shortening[lane], self.records.shortened[lane]
 
     def free(self) -> list[int]:
         """Lanes whose run is over."""

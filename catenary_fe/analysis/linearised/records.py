@@ -57,22 +57,25 @@ def make_heads(lanes: int, sizes: Sizes, nominal: float) -> Heads:
     )
 
 
-def make_records(lanes: int, sizes: Sizes, counts: tuple[int, int, int], every: int) -> Records:
+def make_records(lanes: int, sizes: Sizes, counts: tuple[int, int, int, int], every: int) -> Records:
     """Room for histories.
 
-    counts : numbers of droppers, of supports on all contact wires, of nodes of all wires
+    counts : numbers of droppers, of supports on all contact wires, of nodes of all wires, of gaps whose
+        tension is followed
     every : steps between shapes of the wires, 0: none
     """
     p, j, m, t = sizes.pantographs, sizes.contacts, sizes.coordinates, sizes.steps + 1
-    droppers, supports, nodes = counts
+    droppers, supports, nodes, gaps = counts
     return Records(
         force=np.zeros((lanes, j, t)),
         height=np.zeros((lanes, j, t)),
         masses=np.zeros((lanes, p, m, t)),
         droppers=np.zeros((lanes, droppers, t)),
         supports=np.zeros((lanes, supports, t)),
-        share=np.zeros((lanes, t)),
-        slack=np.zeros((lanes, t)),
+        change=np.zeros((lanes, gaps)),
+        changed=np.zeros((lanes, gaps), dtype=np.int64),
+        shortening=np.zeros((lanes, droppers)),
+        shortened=np.zeros((lanes, droppers), dtype=np.int64),
         wire=np.zeros((lanes, sizes.shapes, nodes)),
         every=every,
     )
@@ -112,7 +115,8 @@ def load_heads(heads: Heads, records: Records, lane: int, scheme: Scheme, start:
             j += 1
     heads.speed[lane], heads.step[lane], heads.last[lane] = start.speed, 0, steps
     records.droppers[lane, :, 0] = start.dropper_force
-    records.share[lane, 0] = records.slack[lane, 0] = 0.0
+    for found in (records.change, records.changed, records.shortening, records.shortened):
+        found[lane] = 0
 
 
 def read_journey(

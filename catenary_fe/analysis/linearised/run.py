@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.analysis.linearised.doubts import slack_doubts, tension_doubts
 from catenary_fe.analysis.linearised.lanes import BLOCK, Lanes, most_lanes
 from catenary_fe.analysis.linearised.records import Sizes
 from catenary_fe.analysis.linearised.setup import Setup, set_up
@@ -28,10 +29,6 @@ from catenary_fe.system import AnyPantograph, CatenaryError, SolverError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
-
-# EN 50318:2002 at 300 km/h pushed up by 200 N reaches both, and the force is 3 % of its σ off (rms)
-TENSION_CHANGE = 0.02  # share of a wire's tension
-SLACKENING = 0.07  # [m] shortening of a slack dropper
 
 
 @dataclass(frozen=True)
@@ -167,7 +164,12 @@ class LinearisedCatenary:
                 f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite, or did not"
                 " settle in a step; look for stiffnesses far from usual values, or use a smaller time step"
             )
-        warnings = [*case.warnings, *_doubts(journey.time, *lanes.doubts(lane, job.steps))]
+        step, catenary = self._time.step, self._shape.catenary
+        warnings = [
+            *case.warnings,
+            *tension_doubts(catenary, self._setup.model.gaps, *lanes.tension_changes(lane), step),
+            *slack_doubts(catenary, *lanes.shortenings(lane), step),
+        ]
         run = make_run(
             self._shape, case.pantographs, job.uplifts.uplifts, case.speed, self._time, journey, warnings,
             method="linearised",
@@ -177,21 +179,3 @@ class LinearisedCatenary:
         except CatenaryError as error:
             return error
         return Run(run.data, job.spent) if reached else None
-
-
-def _doubts(time: Floats, share: Floats, slack: Floats) -> list[str]:
-    """Warnings where motions were not small, and from when on."""
-    found = []
-    if (share > TENSION_CHANGE).any():
-        found.append(
-            f"linearised run: a wire's tension changes by up to {100 * share.max():.1f} %, more than"
-            f" {100 * TENSION_CHANGE:g} % from {time[np.argmax(share > TENSION_CHANGE)]:.2f} s on;"
-            " compare with the nonlinear method"
-        )
-    if (slack > SLACKENING).any():
-        found.append(
-            f"linearised run: a slack dropper shortens by up to {1e3 * slack.max():.0f} mm, more than"
-            f" {1e3 * SLACKENING:g} mm from {time[np.argmax(slack > SLACKENING)]:.2f} s on; compare with the"
-            " nonlinear method"
-        )
-    return found

@@ -198,7 +198,6 @@ def _line(model: LinearModel, factor: Any) -> Line:
         supports=np.concatenate([wire.supports for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,
-        rest=model.rest_tension,
     )
 
 

@@ -50,6 +50,7 @@ class Course:
         found = self.state.arrays() | {
             "tension_times": self.tension.times,
             "tension_changes": self.tension.changes,
+            "tension_spans": self.tension.spans,
             "energies": self.energy.values,
             "account": self.state.account.history[:, : done + 1],
         }
@@ -62,7 +63,7 @@ class Course:
     def go_on(self, arrays: Mapping[str, NDArray[Any]]) -> int:
         """Go on from :meth:`arrays`; returns the number of steps done."""
         self.state.go_on(arrays)
-        self.tension.go_on(arrays["tension_times"], arrays["tension_changes"])
+        self.tension.go_on(*(arrays[f"tension_{name}"] for name in ("times", "changes", "spans")))
         self.energy.go_on(arrays["energies"])
         done = int(self.state.heads.step[0])
         self.state.account.history[:, : done + 1] = arrays["account"]

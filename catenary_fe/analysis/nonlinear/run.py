@@ -114,7 +114,7 @@ class NonlinearCatenary:
 
     def _records(self, sizes: Sizes, total: Floats) -> Records:
         stations = self._stations
-        counts = self._system.droppers.k.size, stations.supports.size, stations.heights.size
+        counts = self._system.droppers.k.size, stations.supports.size, stations.heights.size, 0
         records = make_records(1, sizes, counts, self._every)
         records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
         if self._every:
@@ -134,17 +134,20 @@ class NonlinearCatenary:
             done = self._take(state, records, steps, parts, scheme, factor)
             state.rescale(scheme, self._scheme, start.chains)
             if done:
-                self._note(parts, steps, self._time.step * (int(state.heads.step[0]) - steps))
+                if parts > 1:
+                    self._note(parts, steps, int(state.heads.step[0]) - steps, start)
                 return
         raise SolverError(self._failure(state, start))
 
-    def _note(self, parts: int, steps: int, begin: float) -> None:
+    def _note(self, parts: int, steps: int, done: int, start: Start) -> None:
         """Remember for the result that steps were divided."""
-        if parts > 1:
-            self._notes.append(
-                f"no convergence with the time step after {begin:.4f} s: on from there in steps of 1/{parts}"
-                f" of it for {1e3 * steps * self._time.step:g} ms"
-            )
+        from catenary_fe.fe.faults import smaller_steps
+
+        begin = self._time.step * done
+        at = [chain.position + start.speed * begin for chain in start.chains]
+        self._notes.append(
+            smaller_steps(self._shape.catenary, at, begin, parts, 1e3 * steps * self._time.step)
+        )
 
     def _take(
         self, state: State, records: Records, steps: int, parts: int, scheme: Scheme, factor: Factor

@@ -11,6 +11,15 @@ from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comp
 from catenary_fe.views.report.html import svg_address, template
 from catenary_fe.views.report.tables import Table
 
+_DIGITS = {
+    "contact_loss_percent": 2,
+    "contact_loss_over_5_ms_percent": 2,
+    "losses_over_5_ms": 0,
+    "elasticity_non_uniformity_percent": 2,
+    "slack_droppers": 0,
+    "checks_failed": 0,
+}
+
 
 def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal") -> str:
     """HTML of a comparison, complete in itself. Raises InputError for fewer than two runs."""
@@ -34,10 +43,14 @@ def figures_table(columns: Sequence[Column]) -> Table:
     rows = []
     for key, name in QUANTITIES.items():
         values = [column.values[key] for column in columns]
-        digits = {"contact_loss_percent": 2, "slack_droppers": 0, "checks_failed": 0}.get(key, 1)
-        texts = [f"{value:.{digits}f}" for value in values]
+        digits = _DIGITS.get(key, 1)
+        if all(value is None for value in values):
+            continue
+        texts = ["–" if value is None else f"{value:.{digits}f}" for value in values]
         if len(values) == 2:
-            texts.append(f"{round(values[1] - values[0], digits) + 0.0:+.{digits}f}")
+            known = [value for value in values if value is not None]
+            change = f"{round(known[-1] - known[0], digits) + 0.0:+.{digits}f}"
+            texts.append(change if len(known) == 2 else "–")
         rows.append((name, *texts))
     names = [column.label for column in columns]
     return Table("", ("", *names, *(["difference"] if len(names) == 2 else [])), rows)

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from catenary_fe.equilibrium import Shape
-from catenary_fe.results import Criterion, Elasticity, Run, criteria_rows
+from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_words, criteria_rows
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.system import InputError, PowerSystem
 from catenary_fe.views import layout, plan, run_waves, static
@@ -20,7 +20,6 @@ from catenary_fe.views.style import new_axes
 def report_page(
     run: Run,
     shape: Shape,
-    elasticity: Elasticity | None = None,
     *,
     system: PowerSystem = "AC",
     filter: FilterKind = "causal",
@@ -28,30 +27,31 @@ def report_page(
     """HTML of a run's report, complete in itself.
 
     shape : the static shape that the run started from
-    elasticity : of the line; unset: the report shows none
     system : whose limits the run is judged by
     filter : of the contact force's statistics
 
-    The player and the picture of the waves are left out where the run stored no wire shapes.
+    The player and the picture of the waves are left out where the run stored no wire shapes, the elasticity
+    where the run does not hold it.
     """
     try:
         motion = series.motion(run)
     except InputError:
         motion = None
-    non_uniformity = elasticity.non_uniformity if elasticity else None
-    rows: list[Criterion] = []
-    if not run.partial:
-        rows = criteria_rows(run, system, non_uniformity=non_uniformity, filter=filter)
+    rows: list[Criterion] = [] if run.partial else criteria_rows(run, system, filter=filter)
+    governing = tables.governing_figures(run, filter, rows)
     spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
         "partial": str(run.partial) if run.partial else "",
         "speed": f"{3.6 * run.speed:g}",
         "lead": _lead(run),
+        "governing": tables.why_it_governs(run, governing, rows),
         "versions": json.loads(run.data.attrs["versions"]),
-        "keys": tables.key_figures(run, filter),
+        "keys": tables.key_figures(run, governing),
         "criteria": tables.criteria_table(rows, system),
-        "verdict": tables.criteria_in_words(rows) if rows else f"Not judged. {run.partial}.",
+        "verdict": f"{system}: {criteria_in_words(rows)}." if rows else f"Not judged. {run.partial}.",
+        "bad": any(row.passed is False for row in rows),
+        "checks_verdict": _sentence(checks_in_words(run.checks)),
         "warnings": run.warnings,
         "checks": tables.checks_table(run),
         "motion": motion is not None,
@@ -63,7 +63,7 @@ def report_page(
         "whole_schedule": tables.schedule_table(shape, None),
         "supports": tables.support_table(shape),
         "inputs": tables.input_tables(run),
-        "pictures": _pictures(run, shape, elasticity, waves=motion is not None),
+        "pictures": _pictures(run, shape, filter, waves=motion is not None),
         "data": {
             "force": series.force_chart(run, filter),
             "uplift": series.uplift_chart(run),
@@ -75,20 +75,23 @@ def report_page(
     return template("report.html.j2").render(content)
 
 
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
+
+
 def _lead(run: Run) -> str:
     names = [str(name) for name in run.data["pantograph"].values]
-    whose = f" The figures below are those of {names[0]}." if len(names) > 1 else ""
     spans = ", ".join(map(str, run.evaluated_spans))
     return (
         f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of"
-        f" which {spans} are evaluated; {run.time[-1]:.2f} s simulated.{whose}"
+        f" which {spans} are evaluated; {run.time[-1]:.2f} s simulated."
     )
 
 
-def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: bool) -> dict[str, str]:
+def _pictures(run: Run, shape: Shape, filter: FilterKind, *, waves: bool) -> dict[str, str]:
     """Addresses of the pictures by name, the pictures inside them."""
     pictures = {
-        "force": svg_address(run_pictures.plot_contact_force(run)),
+        "force": svg_address(run_pictures.plot_contact_force(run, filter=filter)),
         "uplift": svg_address(run_pictures.plot_support_uplift(run)),
         "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
         "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
@@ -101,8 +104,8 @@ def _pictures(run: Run, shape: Shape, elasticity: Elasticity | None, *, waves: b
     if shape.catenary.is_spatial:
         width = plan.head_width(run.pantographs)
         pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=width))
-    if elasticity:
-        pictures["elasticity"] = svg_address(static.plot_elasticity(elasticity))
+    if curve := run.elasticity:
+        pictures["elasticity"] = svg_address(static.plot_elasticity(curve))
     if waves:
         pictures["waves"] = svg_address(
             run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150

@@ -50,7 +50,7 @@ def uplift_chart(run: Run) -> dict[str, Any]:
     every = _stride(run.time.size, _POINTS // 4)
     uplift = 1e3 * run.data["support_uplift"].values[:, ::every]
     inner = range(1, uplift.shape[0] - 1)
-    evaluated = [i for i in inner if {i, i + 1} & set(run.evaluated_spans)]
+    evaluated = [n - 1 for n in run.uplift_by_support() if n - 1 in inner]
     shown = [i for i in inner if i in evaluated or len(inner) <= _SUPPORTS]
     colours = dict(zip(evaluated, sequence(len(evaluated)), strict=True))
     series = [

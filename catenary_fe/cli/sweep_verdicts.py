@@ -1,0 +1,150 @@
+"""How the cases of a sweep did: checks, criteria and warnings, by case and counted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from catenary_fe.cli.terminal import say
+from catenary_fe.system import PowerSystem
+
+if TYPE_CHECKING:
+    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
+    from catenary_fe.analysis.sweep_store import Record
+    from catenary_fe.results import Criterion, ForceStatistics
+
+_MOST = 5  # warnings by themselves
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What there is to say of one case.
+
+    values : what tells it from the others
+    criteria : of its system; empty where it was not judged, or failed
+    failed_checks : by name, in words
+    warnings : besides failed checks
+    governing : name of the pantograph that decides
+    error : why it did not run; empty where it did
+    """
+
+    values: dict[str, Any]
+    criteria: Sequence[Criterion] = ()
+    failed_checks: dict[str, str] = field(default_factory=dict)
+    warnings: Sequence[str] = ()
+    governing: str | None = None
+    error: str = ""
+
+    @property
+    def missed(self) -> list[Criterion]:
+        """Criteria that it misses."""
+        return [row for row in self.criteria if row.passed is False]
+
+    def missed_by(self, pantograph: str) -> str:
+        """Names of the criteria that a pantograph misses, and the line's."""
+        return "; ".join(row.name for row in self.missed if row.pantograph in (pantograph, None))
+
+
+def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:
+    """The verdict on a case, by what is kept of its run."""
+    from catenary_fe.analysis.sweep import BrokenCase
+    from catenary_fe.results import ForceStatistics, excess, governing
+    from catenary_fe.results.check import FAILED
+
+    if isinstance(case, BrokenCase) or "error" in record:
+        return Verdict(record["values"], error=record["error"])
+    summary = record["summary"]
+    statistics = [ForceStatistics.from_dict(each, summary["filter"]) for each in summary["pantographs"]]
+    criteria = _criteria(summary, statistics, case, system) if system else []
+    failed = [text.removeprefix(FAILED) for text in summary["warnings"] if text.startswith(FAILED)]
+    return Verdict(
+        record["values"],
+        criteria,
+        dict(zip(summary["checks_failed"], failed, strict=True)),
+        [text for text in summary["warnings"] if not text.startswith(FAILED)],
+        governing(statistics, excess(criteria)),
+    )
+
+
+def _criteria(
+    summary: dict[str, Any], statistics: list[ForceStatistics], case: SweepCase, system: PowerSystem
+) -> list[Criterion]:
+    from catenary_fe.results import KeyFigures, judge
+
+    figures = KeyFigures(
+        speed=case.speed,
+        catenary=case.catenary,
+        pantographs=case.pantographs,
+        statistics=statistics,
+        uplift={int(support): lift / 1e3 for support, lift in summary["support_uplift_mm"].items()},
+    )
+    return judge(figures, system)
+
+
+def in_words(verdicts: Sequence[Verdict], system: PowerSystem | None) -> list[str]:
+    """One sentence each on cases that did not run, checks, criteria and warnings."""
+    ran = [v for v in verdicts if not v.error]
+    count = f"of {len(ran)} cases"
+    said = (
+        [f"{len(verdicts) - len(ran)} of {len(verdicts)} cases did not run"]
+        if len(ran) < len(verdicts)
+        else []
+    )
+    if not ran:
+        return said
+    checks = [list(v.failed_checks) for v in ran if v.failed_checks]
+    said.append(f"checks failed in {len(checks)} {count}{_named(checks)}" if checks else "all checks passed")
+    misses = [[row.name for row in v.missed] for v in ran if v.missed]
+    if system:
+        missed = f"criteria of {system} missed in {len(misses)} {count}{_named(misses)}"
+        said.append(missed if misses else f"all criteria of {system} with a known limit met")
+    warned = sum(bool(v.warnings) for v in ran)
+    said.append(f"warnings in {warned} {count}" if warned else "no warning")
+    return said
+
+
+def _named(by_case: Iterable[Sequence[str]]) -> str:
+    """Each name with the number of cases that it is in."""
+    counted = Counter(name for names in by_case for name in dict.fromkeys(names))
+    return ": " + ", ".join(f"{name} in {n}" for name, n in counted.most_common())
+
+
+def warn_once(verdicts: Sequence[Verdict]) -> None:
+    """Each warning once on standard error, with the number of its cases; of many, the most frequent ones."""
+    counted = Counter(text for v in verdicts for text in dict.fromkeys(v.warnings))
+    for text, n in counted.most_common(_MOST):
+        say("warning", f"{n} of {len(verdicts)} cases: {text}", "yellow")
+    if len(counted) > _MOST:
+        say("warning", f"and {len(counted) - _MOST} others: all are in remarks.csv", "yellow")
+
+
+def exit_code(verdicts: Sequence[Verdict], system: PowerSystem | None) -> int:
+    """1 where a case misses a criterion, which is said on standard error; else 0."""
+    misses = [[row.name for row in v.missed] for v in verdicts if v.missed]
+    if misses:
+        click.echo(
+            f"missed: criteria of {system} in {len(misses)} of {len(verdicts)} cases{_named(misses)}",
+            err=True,
+        )
+    return 1 if misses else 0
+
+
+def remarks(verdicts: Sequence[Verdict]) -> Iterator[dict[str, Any]]:
+    """Rows of a table: all that is to be said of the cases, in words."""
+    from catenary_fe.results import labels
+
+    for verdict in verdicts:
+        found = [("did not run", verdict.error)] if verdict.error else []
+        found += [("check failed", text) for text in verdict.failed_checks.values()]
+        found += [
+            ("criterion missed", f"{label}: {row.value_text}, must be {row.limit_text}")
+            for row, label in zip(verdict.criteria, labels(verdict.criteria), strict=True)
+            if row.passed is False
+        ]
+        found += [("warning", text) for text in verdict.warnings]
+        for kind, text in found:
+            yield verdict.values | {"kind": kind, "text": text}

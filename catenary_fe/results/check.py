@@ -1,0 +1,74 @@
+"""A check of a run: what was found, what it must be, and what to do if it is not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from numpy import isfinite
+
+from catenary_fe.system.frozen import changed_by_copy
+
+FAILED = "check failed: "  # begins the warning of a check that fails
+
+
+@changed_by_copy
+@dataclass(frozen=True)
+class Check:
+    """One guard: what was found, what it must be, and what to do if it is not.
+
+    name : short, for tables and JSON
+    rule : whether the bound is the largest ("at most") or the smallest ("at least") good value
+    text : what value and bound are, and the remedy
+    """
+
+    name: str
+    value: float
+    unit: str
+    rule: Literal["at most", "at least"]
+    bound: float
+    text: str
+
+    @property
+    def value_text(self) -> str:
+        """Value and unit as a table says them."""
+        text = f"{self.value:.4g}" if abs(self.value) >= 1e-3 else f"{self.value:.1g}"
+        return f"{text} {self.unit}".rstrip()
+
+    @property
+    def bound_text(self) -> str:
+        """Rule, bound and unit as a table says them."""
+        return f"{self.rule} {self.bound:.4g} {self.unit}".rstrip()
+
+    @property
+    def verdict(self) -> str:
+        """'passed' or 'failed'."""
+        return "passed" if self.passed else "failed"
+
+    @property
+    def passed(self) -> bool:
+        """False also where the value is not a number."""
+        return self.value <= self.bound if self.rule == "at most" else self.value >= self.bound
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return {
+            "name": self.name,
+            "value": self.value if isfinite(self.value) else None,
+            "unit": self.unit,
+            "rule": self.rule,
+            "bound": self.bound,
+            "passed": bool(self.passed),
+        }
+
+    def __str__(self) -> str:
+        return f"{self.name} = {self.value_text}, must be {self.bound_text}: {self.text}"
+
+
+def checks_in_words(checks: Sequence[Check]) -> str:
+    """How many checks fail, and which."""
+    failed = [check.name for check in checks if not check.passed]
+    if not failed:
+        return f"all {len(checks)} checks passed"
+    return f"{len(failed)} of {len(checks)} checks failed: {', '.join(failed)}"
