@@ -252,7 +252,7 @@ def test_rows_are_ready_for_json(short_run):
     assert again == records
     assert set(again[0]) == {
         "name", "pantograph", "value", "relation", "limit", "unit", "source", "recalled", "tolerance",
-        "passed",
+        "start", "passed",
     }  # fmt: skip
 
 
@@ -276,14 +276,15 @@ def test_criteria_in_words():
 
 
 def test_how_far_a_limit_is_missed():
-    def row(value, relation, limit, pantograph="a"):
-        return cf.Criterion(
-            name="x", value=value, relation=relation, limit=limit, unit="N", source="", pantograph=pantograph
-        )
+    def row(value, relation, limit, pantograph="a", start=None):
+        figure = {"name": "x", "unit": "N", "source": "", "pantograph": pantograph, "start": start}
+        return cf.Criterion(value=value, relation=relation, limit=limit, **figure)
 
     assert row(3.0, "at most", 2.0).used == 1.5
     assert row(4.0, "at least", 5.0).used == 1.25
-    assert row(-4.0, "above", 0.0).used is row(1.0, "at most", None).used is None
+    assert row(-4.0, "above", 0.0).used == float("inf")
+    assert row(-4.0, "above", 0.0, start=80.0).used == pytest.approx(84 / 80)
+    assert row(1.0, "at most", None).used is None
     rows = [
         row(3.0, "at most", 2.0), row(4.0, "at least", 5.0), row(9.0, "at most", 10.0, "b"),
         row(-1.0, "above", 0.0, "c"), row(9.0, "at most", 1.0, None),

@@ -62,7 +62,7 @@ def test_a_missed_lower_limit_of_zero_has_a_bar_beyond_100_percent():
     limit = {"limit": 0.0, "source": "test", "pantograph": "P"}
     rows = [
         Criterion(name="mean force", value=100.0, unit="N", **limit | {"limit": 120.0}),
-        Criterion(name="statistical minimum", value=-5.0, relation="above", unit="N", **limit),
+        Criterion(name="statistical minimum", value=-5.0, relation="above", unit="N", start=100.0, **limit),
         Criterion(name="contact loss", value=0.05, unit="%", **limit),
     ]
     mean, minimum, loss = views.plot_criteria(rows).patches
