@@ -138,7 +138,7 @@ def read_record(path: Path) -> dict[str, Any]:
     Raises InputError where it is damaged.
     """
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8-sig"))  # editors may put a mark before it
     except FileNotFoundError:
         return {}
     except OSError as error:

@@ -22,6 +22,7 @@ from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.selfcheck import selfcheck
+from catenary_fe.cli.surroundings import prepare
 from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
@@ -116,6 +117,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def entry() -> None:
     """Entry point of the installed command."""
+    prepare()
     signal.signal(signal.SIGTERM, _stop)
     sys.exit(main())
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from catenary_fe.cli.surroundings import writes_unicode
 from catenary_fe.system import Catenary, CatenaryError, load_catenary
 
 layout_argument = click.argument("layout", type=click.Path())
@@ -50,7 +51,8 @@ def read_layout(path: str, planar: bool) -> Catenary:
 
 def print_json(value: Any) -> None:
     """One JSON document on standard output; not-a-number never appears in it."""
-    click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))
+    lossy = not writes_unicode(sys.stdout)
+    click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=lossy))
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
@@ -101,7 +103,8 @@ def working(text: str, shown: bool) -> AbstractContextManager[Any]:
         return nullcontext()
     from rich.console import Console
 
-    return Console(stderr=True).status(text)
+    spinner = "dots" if writes_unicode(sys.stderr) else "line"
+    return Console(stderr=True).status(text, spinner=spinner)
 
 
 @contextmanager
