@@ -13,8 +13,9 @@ from catenary_fe.results.files import own_temporary_folder
 
 SPELT = "catenary_fe.spelt"  # name of the error handler
 _SIMILAR = str.maketrans(
-    {"–": "-", "—": "-", "−": "-", "·": ".", "×": "x", "≤": "<=", "≥": ">=", "→": "->", "√": "sqrt ",
-     "±": "+-", "“": '"', "”": '"', "„": '"', "‘": "'", "’": "'", "°": " deg", "ß": "ss", "━": "-", "⁄": "/", "½": "1/2"}
+    {"–": "-", "—": "-", "−": "-", "━": "-", "·": ".", "×": "x", "⁄": "/", "½": "1/2", "±": "+-", "≤": "<=",
+     "≥": ">=", "→": "->", "√": "sqrt ", "“": '"', "”": '"', "„": '"', "‘": "'", "’": "'", "°": " deg",
+     "ß": "ss"}
 )  # fmt: skip
 
 
@@ -28,6 +29,7 @@ def prepare() -> None:
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=SPELT)
     os.environ.pop("MPLBACKEND", None)  # no picture needs one; matplotlib refuses unknown ones
+    os.environ["MATPLOTLIBRC"] = os.devnull  # pictures are the same whoever draws them
     folder = None if "MPLCONFIGDIR" in os.environ or _matplotlib_has_a_place() else own_temporary_folder()
     if folder:
         os.environ["MPLCONFIGDIR"] = os.path.join(folder, "matplotlib")

@@ -23,11 +23,13 @@ from catenary_fe.views.style import (
     headroom,
     mark_supports,
     new_axes,
+    styled,
 )
 
 Floats = NDArray[np.float64]
 
 
+@styled
 def plot_layout(
     catenary: Catenary,
     shape: Shape | None = None,
@@ -185,6 +187,7 @@ def _dimension(
         ax.text(*middle, text, va="center", ha="center", fontsize=8, backgroundcolor="white")
 
 
+@styled
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions.
 
@@ -228,6 +231,7 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
     return finish(ax, "position along the line (m)", "height above nominal (mm)", title)
 
 
+@styled
 def plot_elasticity(elasticity: Elasticity, *, ax: Axes | None = None) -> Axes:
     """Elasticity along the line with its extremes."""
     ax = new_axes(ax)

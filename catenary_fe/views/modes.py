@@ -6,9 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
-from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, finish, mark_supports, new_axes
+from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, finish, mark_supports, new_axes, styled
 
 
+@styled
 def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     """Both wires in one eigenform (mode numbered from 0), each about its own line, droppers between them.
 
@@ -49,6 +50,7 @@ def _drawn(wire: WireShapes, mode: int, sideways: bool) -> np.ndarray:
     return np.asarray(shapes[mode])
 
 
+@styled
 def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
     """How many modes lie below a frequency, by what they are: clusters are steps."""
     ax = new_axes(ax, (10.0, 3.6))

@@ -10,9 +10,18 @@ from matplotlib.axes import Axes
 from catenary_fe.equilibrium import Shape
 from catenary_fe.system import Catenary
 from catenary_fe.views.layout import hanging_lines
-from catenary_fe.views.style import DROPPER, SUPPORT, finish, headroom, mark_supports, new_axes
+from catenary_fe.views.style import (
+    DROPPER,
+    SUPPORT,
+    finish,
+    headroom,
+    mark_supports,
+    new_axes,
+    styled,
+)
 
 
+@styled
 def plot_plan(
     shape: Shape, *, spans: Sequence[int] | None = None, head_width: float = 1.2, ax: Axes | None = None
 ) -> Axes:

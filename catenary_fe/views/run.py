@@ -15,9 +15,11 @@ from catenary_fe.views.style import (
     mark_supports,
     new_axes,
     note_failed,
+    styled,
 )
 
 
+@styled
 def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
@@ -61,6 +63,7 @@ def plot_contact_force(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@styled
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour."""
     ax = new_axes(ax)
@@ -81,6 +84,7 @@ def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     return note_failed(finish(ax, "time (s)", "uplift (mm)", title), run.failed_checks)
 
 
+@styled
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     """Static, largest and smallest force of each dropper; those that went slack are marked."""
     ax = new_axes(ax)
@@ -103,6 +107,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
+@styled
 def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
     """Work on the whole system, what its dampers took, what it has stored, and what is missing of that.
 
