@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -25,9 +24,9 @@ from catenary_fe.system.parameters import (
 )
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import Support
+from catenary_fe.system.toml import read_toml
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
-LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
 MOST_DROPPERS = 200_000  # of a line, likewise
 
@@ -230,7 +229,7 @@ def load_catenary(path: str | Path) -> Catenary:
     Raises InputError, one line for each fault that the file has.
     """
     path = Path(path)
-    record = _read_toml(path, "layout")
+    record = read_toml(path, "layout")
     try:
         return LayoutFile.model_validate(record).catenary()
     except ValidationError as error:
@@ -256,7 +255,7 @@ def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str
 
 def read_layout(path: str | Path) -> dict[str, Any]:
     """A layout file as it is written, not checked yet. Raises InputError if it is no TOML file."""
-    return _read_toml(Path(path), "layout")
+    return read_toml(Path(path), "layout")
 
 
 def load_pantograph(name_or_path: str | Path) -> Pantograph:
@@ -282,33 +281,6 @@ def pantograph_schema() -> dict[str, Any]:
 
 def _read(path: Path, model: type[_Model], kind: str) -> _Model:
     try:
-        return model.model_validate(_read_toml(path, kind))
+        return model.model_validate(read_toml(path, kind))
     except ValidationError as error:
         raise InputError(*problem_lines(error, model, where=str(path))) from None
-
-
-def _read_toml(path: Path, kind: str) -> dict[str, Any]:
-    content = _read_bytes(path, kind)
-    try:
-        return tomllib.loads(content.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text in UTF-8 (byte {error.start}); save it as UTF-8") from None
-    except RecursionError:
-        raise InputError(f"{path}: not a TOML file: lists or tables too deep inside one another") from None
-    except ValueError as error:  # of TOML, and of whole numbers of thousands of digits
-        raise InputError(f"{path}: not a TOML file: {error}") from None
-
-
-def _read_bytes(path: Path, kind: str) -> bytes:
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)  # devices and pipes have no size, nor need they end
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r}: no file can have this name; check it") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
-    return content

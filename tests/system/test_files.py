@@ -7,7 +7,7 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.system import layout_schema, pantograph_schema
-from catenary_fe.system.files import LARGEST_FILE
+from catenary_fe.system.toml import LARGEST_FILE
 
 
 def faults(path):
@@ -184,3 +184,41 @@ def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
     text = json.dumps(pantograph_schema())
     assert "EN 50367 AC" in text
     assert "[N] constant force on the lowest mass" in text
+
+
+CASES = Path(__file__).parents[1] / "cases"
+
+
+def test_a_byte_order_mark_is_read(tmp_path):
+    assert cf.load_catenary(CASES / "windows_bom.toml").name == "plain line"
+    path = tmp_path / "pantograph.toml"
+    path.write_text("\ufeffuplift_force = 60.0\nstages = [{ mass = 7.0, stiffness = 7000.0 }]\n", "utf-8")
+    assert cf.load_pantograph(path).uplift_force == 60.0
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("contact_wire_height = 5,5", "line 2: 5,5 is a number with a comma: write a point before decimals (5.5)"),
+        ("steady_arm = { mass = 0,8, stiffness = 1 }", "line 2: 0,8 is a number with a comma"),
+        ("tension = 15 000", "line 2: 15 000 is a number with blanks: write 15000"),
+        ("library = “AC-120”", "line 2, column 11: typographic quote “ (U+201C): write \" in its place"),
+        ("library = ‘AC-120’ # it's", "line 2, column 11: typographic quote ‘ (U+2018)"),
+        ("tension\u00a0= 15e3", "line 2, column 8: no-break or other special blank (U+00A0)"),
+        ("curve_radius = −300.0", "line 2, column 16: dash − (U+2212): write an ordinary hyphen"),
+        ("name = 'a – “b”' c", "not a TOML file: "),  # inside a text they are right
+    ],
+)  # fmt: skip
+def test_usual_slips_are_named_with_their_line(tmp_path, line, said):
+    path = tmp_path / "a.toml"
+    path.write_text(f'name = "“Łódź” – 5,5"\n{line}\n', "utf-8")
+    (found,) = faults(path)
+    assert found.startswith(said)
+
+
+def test_other_encodings_are_named(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_bytes('a = 1\nname = "Łódź"\n'.encode("cp1250"))
+    assert faults(path) == ["not a text in UTF-8 (line 2, byte 14); save it as UTF-8"]
+    path.write_text("name = 'x'", "utf-16")
+    assert faults(path)[0].startswith("a text in UTF-16")
