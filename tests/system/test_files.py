@@ -1,6 +1,7 @@
 """Layout and pantograph files: what is written is what is built; what is wrong is said at once."""
 
 import json
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -199,7 +200,7 @@ def test_a_byte_order_mark_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("contact_wire_height = 5,5", "line 2: 5,5 is a number with a comma: write a point before decimals (5.5)"),
+        ("height = 5,5", "line 2: 5,5 is a number with a comma: write a point before decimals (5.5), and"),
         ("steady_arm = { mass = 0,8, stiffness = 1 }", "line 2: 0,8 is a number with a comma"),
         ("tension = 15 000", "line 2: 15 000 is a number with blanks: write 15000"),
         ("library = “AC-120”", "line 2, column 11: typographic quote “ (U+201C): write \" in its place"),
