@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead
+from catenary_fe.system import AnyPantograph, ElasticPantograph, InputError, Panhead, counted
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.system.parameters import shorten
 from catenary_fe.system.plausibility import layout_warnings, pantograph_warnings
@@ -118,7 +118,7 @@ def run_warnings(
     between = min(catenary.spans_to_evaluate) - 1 - reached
     if between < RUN_IN:
         found.append(
-            f"only {between} spans lie between the start and the evaluated ones; {RUN_IN} let the start's"
-            " transient fade"
+            f"only {counted(between, 'span')} between the start and the evaluated ones; {RUN_IN} let the"
+            " start's transient fade"
         )
     return found

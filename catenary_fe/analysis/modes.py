@@ -6,7 +6,7 @@ import numpy as np
 
 from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.results.modes import Modes, WireShapes
-from catenary_fe.system import InputError
+from catenary_fe.system import InputError, counted
 
 
 def solve_modes(shape: Shape, *, count: int | None = None, below: float | None = None) -> Modes:
@@ -68,8 +68,8 @@ def mode_warnings(shape: Shape, modes: Modes) -> list[str]:
     if not above:
         return []
     return [
-        f"{above} modes, up to {modes.frequencies[-1]:.0f} Hz, lie above {resolved:.0f} Hz, where waves are"
-        " shorter than two elements; refine the mesh, or leave them out"
+        f"above {resolved:.0f} Hz waves are shorter than two elements: {counted(above, 'mode')}, up to"
+        f" {modes.frequencies[-1]:.0f} Hz; refine the mesh, or leave them out"
     ]
 
 

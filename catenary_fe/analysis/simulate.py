@@ -25,7 +25,7 @@ from catenary_fe.analysis.resources import check_memory, demand
 from catenary_fe.equilibrium import Shape, check_shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, CatenaryError, InputError
+from catenary_fe.system import AnyPantograph, CatenaryError, InputError, counted
 
 if TYPE_CHECKING:
     from catenary_fe.fe.drive import Journey
@@ -230,7 +230,9 @@ def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Pla
         positions = [margin]
     start = np.asarray(positions, dtype=float)
     if start.size != count:
-        raise InputError(f"{start.size} positions for {count} pantographs: give one for each")
+        raise InputError(
+            f"{counted(start.size, 'position')} for {counted(count, 'pantograph')}: give one for each"
+        )
     for value in start:
         if not margin <= value < length - margin:
             raise InputError(

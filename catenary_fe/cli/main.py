@@ -27,7 +27,7 @@ from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
 from catenary_fe.cli.view import view
-from catenary_fe.system import CatenaryError, InputError, Interrupted
+from catenary_fe.system import CatenaryError, InputError, Interrupted, counted
 
 EPILOG = """\b
 Examples:
@@ -97,7 +97,7 @@ def main(arguments: list[str] | None = None) -> int:
         for line in lines[:MOST_LINES]:
             say("error", line, "red")
         if len(lines) > MOST_LINES:
-            say("error", f"and {len(lines) - MOST_LINES} more faults like these", "red")
+            say("error", f"and {counted(len(lines) - MOST_LINES, 'more fault')} like these", "red")
         return error.exit_code
     except click.ClickException as error:
         error.show()

@@ -12,7 +12,7 @@ import click
 
 from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import exit_code, judged, print_criteria
-from catenary_fe.cli.folder import Folder, output_folder, read_record
+from catenary_fe.cli.folder import PARTIAL, Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.terminal import (
@@ -37,6 +37,7 @@ from catenary_fe.system import (
     Pantograph,
     PowerSystem,
     SolverError,
+    counted,
     layout_warnings,
     load_pantograph,
 )
@@ -57,7 +58,6 @@ much for the machine is refused before the run. A run that is stopped or fails i
 in DIR/partial."""
 
 
-PARTIAL = "partial"  # folder inside the output folder
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
@@ -277,7 +277,9 @@ def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[P
     if len(loaded) == 1 and len(positions) > 1:
         return loaded * len(positions)
     if len(loaded) > 1 and len(positions) not in (0, len(loaded)):
-        raise InputError(f"{len(positions)} positions for {len(loaded)} pantographs: give one for each")
+        raise InputError(
+            f"{counted(len(positions), 'position')} for {len(loaded)} pantographs: give one for each"
+        )
     return loaded
 
 

@@ -23,7 +23,7 @@ from catenary_fe.cli.terminal import (
     quiet_option,
     spans_option,
 )
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary, InputError, counted
 from catenary_fe.system.variation import PANTOGRAPH, Variable, varied_pantograph
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def sweep(
         time=TimeSettings(step=time_step_ms / 1e3),
     )
     cases = _cases(layout, axes, positions, spans)
-    with progress_bar(f"{count} cases", not quiet) as progress, _kept(output):
+    with progress_bar(counted(count, "case"), not quiet) as progress, _kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -137,8 +137,8 @@ def sweep(
     lost = [record for record in failed if LOST in record]
     if lost:
         click.echo(
-            f"{len(lost)} of {len(records)} cases were lost with their processes; the others are kept in"
-            f" {output}: start again to try the lost ones once more",
+            f"lost with their processes: {len(lost)} of {counted(len(records), 'case')}; the others are kept"
+            f" in {output}: start again to try the lost ones once more",
             err=True,
         )
     if failed and (lost or len(failed) == len(records)):

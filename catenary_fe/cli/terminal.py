@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -14,6 +15,9 @@ import click
 
 from catenary_fe.cli.surroundings import writes_unicode
 from catenary_fe.system import Catenary, CatenaryError, load_catenary
+from catenary_fe.system.files import MOST_SPANS
+
+_RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
 
 layout_argument = click.argument("layout", type=click.Path())
 planar_option = click.option(
@@ -27,19 +31,28 @@ output_option = click.option(
 
 
 def _span_numbers(context: click.Context, parameter: click.Parameter, text: str | None) -> list[int] | None:
+    """Numbers and ranges, each span once, in the order given."""
     if text is None:
         return None
-    try:
-        return [int(part) for part in text.split(",")]
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is not a list of span numbers such as 5,6") from None
+    numbers: dict[int, None] = {}
+    for part in text.split(","):
+        found = _RANGE.fullmatch(part)
+        first, last = (int(found[1]), int(found[2] or found[1])) if found else (1, 0)
+        if not 0 <= last - first < MOST_SPANS:
+            raise click.BadParameter(
+                f"{text!r} is not a list of spans or rising ranges such as 5,6 or 5-17,20"
+            )
+        numbers |= dict.fromkeys(range(first, last + 1))
+    return list(numbers)
 
 
 spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
+    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6 or 5-17; unset: the layout's."
 )
 shown_spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to show, e.g. 5,6; unset: around the evaluated ones."
+    "--spans",
+    callback=_span_numbers,
+    help="Spans to show, e.g. 5,6 or 5-17; unset: around the evaluated ones.",
 )
 
 

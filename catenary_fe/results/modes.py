@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary, InputError, counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,7 +121,7 @@ class Modes:
     def kind(self, mode: int) -> ModeKind:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
         if not 0 <= mode < len(self):
-            raise InputError(f"mode {mode}: {len(self)} modes were computed, numbered from 0")
+            raise InputError(f"mode {mode}: computed: {counted(len(self), 'mode')}, numbered from 0")
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)

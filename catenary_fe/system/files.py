@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -233,10 +234,36 @@ def load_catenary(path: str | Path) -> Catenary:
     try:
         return LayoutFile.model_validate(record).catenary()
     except ValidationError as error:
-        lines = [*problem_lines(error, LayoutFile), *_further_faults(record, error)]
+        lines = [*fault_lines(error, record), *_further_faults(record, error)]
     except InputError as error:
         lines = list(error.problems)
     raise InputError(*(f"{path}: {line}" for line in lines)) from None
+
+
+def fault_lines(error: ValidationError, record: dict[str, Any]) -> list[str]:
+    """One line for each fault of a layout as it is written, by the numbers of spans and supports on site."""
+    names = _numbers_on_site(record)
+    found = [(line, re.match(r"(?:supports|span) \d+", line)) for line in problem_lines(error, LayoutFile)]
+    return [names.get(m[0], m[0]) + line[m.end() :] if m else line for line, m in found]
+
+
+def _numbers_on_site(record: dict[str, Any]) -> dict[str, str]:
+    """Names of entries in lists: by the support, or by the first of the spans that they stand for."""
+    names, first = {}, 1
+    for n, entry in enumerate(_entries(record, "supports"), start=1):
+        at = entry.get("at")
+        names[f"supports {n}"] = f"supports: at = {at}" if type(at) is int else f"entry {n} of [[supports]]"
+    for n, entry in enumerate(_entries(record, "span"), start=1):
+        if first != n:
+            names[f"span {n}"] = f"span {first} (entry {n} of [[span]])"
+        count = entry.get("count", 1)
+        first += count if type(count) is int else 1
+    return names
+
+
+def _entries(record: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    entries = record.get(key)
+    return [e if isinstance(e, dict) else {} for e in entries] if isinstance(entries, list) else []
 
 
 def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
+from catenary_fe.system import counted
 from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, finish, mark_supports, new_axes, styled
 
 
@@ -63,5 +64,5 @@ def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
         label = f"{IN_WORDS.get(name, name)}: {of_kind.sum()}"
         ax.plot(modes.frequencies[of_kind], number[of_kind], ".", color=colour, markersize=5, label=label)
     ax.legend(fontsize=8, loc="upper left")
-    title = f"{modes.catenary.name}: {len(modes)} modes up to {modes.frequencies[-1]:.1f} Hz"
+    title = f"{modes.catenary.name}: {counted(len(modes), 'mode')} up to {modes.frequencies[-1]:.1f} Hz"
     return finish(ax, "frequency (Hz)", "number of modes below it", title)

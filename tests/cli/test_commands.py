@@ -174,7 +174,7 @@ def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path):
         ),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--element-m", "1e-6"], 3, "more than 200,000"),
         (["static", "LAYOUT", "--force", "0"], 3, "force = 0.0 N: must be above 0"),
-        (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
+        (["static", "LAYOUT", "--spans", "five"], 2, "not a list of spans or rising ranges"),
         (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
         (["frobnicate"], 2, "No such command"),
         (["info"], 2, "Missing argument 'LAYOUT'"),

@@ -223,3 +223,16 @@ def test_other_encodings_are_named(tmp_path):
     assert faults(path) == ["not a text in UTF-8 (line 2, byte 14); save it as UTF-8"]
     path.write_text("name = 'x'", "utf-16")
     assert faults(path)[0].startswith("a text in UTF-16")
+
+
+def test_spans_and_supports_are_called_by_their_numbers_on_site(edited):
+    path = edited(
+        ("[[span]]", "[[span]]\nlength = 60.0\ndroppers = [30.0]\ncount = 4\n[[span]]"),
+        ("[[span]]", '[[supports]]\nat = 7\nsystem_height = "1.2"\n[[supports]]\nstagger = 0.2\n[[span]]'),
+        ("count = 10", "count = 0"),
+    )
+    assert [line.split(" = 0")[0].split(" is ")[0] for line in faults(path)] == [
+        "supports: at = 7: system_height = '1.2': must be a number; it",
+        "entry 2 of [[supports]]: at",
+        "span 5 (entry 2 of [[span]]): count",
+    ]

@@ -12,7 +12,7 @@ import numpy as np
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Criterion, ForceStatistics, Run, labels, missed
 from catenary_fe.results.signal import CUT_OFF, FilterKind
-from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
+from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire, counted
 from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
 
 
@@ -225,7 +225,7 @@ def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
         rows.append(("stagger", f"{_range(catenary.staggers)} m"))
     radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
     if radii:
-        rows.append(("curve radius", f"{_range(radii)} m in {len(radii)} spans"))
+        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(radii), 'span')}"))
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
