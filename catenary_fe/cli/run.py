@@ -32,9 +32,9 @@ from catenary_fe.cli.terminal import (
     working,
 )
 from catenary_fe.system import (
+    AnyPantograph,
     InputError,
     Interrupted,
-    Pantograph,
     PowerSystem,
     SolverError,
     counted,
@@ -271,7 +271,7 @@ def write_run(
         )
 
 
-def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[Pantograph]:
+def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[AnyPantograph]:
     """One pantograph a position; a single name serves for all positions."""
     loaded = [load_pantograph(name) for name in names]
     if len(loaded) == 1 and len(positions) > 1:

@@ -7,12 +7,12 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from catenary_fe.system import library
 from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.errors import InputError
-from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.pantograph import AnyPantograph, ElasticPantograph, Pantograph
 from catenary_fe.system.parameters import (
     NonEmpty,
     Number,
@@ -285,14 +285,18 @@ def read_layout(path: str | Path) -> dict[str, Any]:
     return read_toml(Path(path), "layout")
 
 
-def load_pantograph(name_or_path: str | Path) -> Pantograph:
+def load_pantograph(name_or_path: str | Path) -> AnyPantograph:
     """A pantograph from a TOML file, or from the library by its name.
+
+    A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph.
 
     Raises InputError, one line for each fault that the file has, or the near names of the library.
     """
     path = Path(name_or_path)
     if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
-        return _read(path, Pantograph, "pantograph")
+        record = read_toml(path, "pantograph")
+        elastic = "stages" not in record and not record.keys().isdisjoint({"force", "stiffness", "law"})
+        return _checked(record, ElasticPantograph, path) if elastic else _checked(record, Pantograph, path)
     return library.pantograph(str(name_or_path))
 
 
@@ -302,12 +306,12 @@ def layout_schema() -> dict[str, Any]:
 
 
 def pantograph_schema() -> dict[str, Any]:
-    """JSON Schema of a pantograph file."""
-    return Pantograph.model_json_schema()
+    """JSON Schema of a pantograph file, of masses or elastic."""
+    return TypeAdapter(AnyPantograph).json_schema() | {"title": "catenary_fe pantograph"}
 
 
-def _read(path: Path, model: type[_Model], kind: str) -> _Model:
+def _checked(record: dict[str, Any], model: type[_Model], path: Path) -> _Model:
     try:
-        return model.model_validate(read_toml(path, kind))
+        return model.model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, model, where=str(path))) from None

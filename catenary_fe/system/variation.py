@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.files import LayoutFile, fault_lines, load_pantograph, read_layout
-from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.pantograph import AnyPantograph
 from catenary_fe.system.parameters import problem_lines
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
@@ -49,7 +49,7 @@ class Variable:
             raise InputError(*(f"{said}: {line}" for line in error.problems)) from None
 
 
-def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> Pantograph:
+def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> AnyPantograph:
     """A pantograph of the library or a file with these values; keys of the layout are left out.
 
     Raises InputError for a place that does not exist and for values that break a rule.
@@ -65,9 +65,9 @@ def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> Pantograph:
         replace_at(record, place, value)
     said = ", ".join([name_or_path, *(f"{place} = {value!r}" for place, value in changes.items())])
     try:
-        return Pantograph.model_validate(record)
+        return type(pantograph).model_validate(record)
     except ValidationError as error:
-        raise InputError(*problem_lines(error, Pantograph, where=said)) from None
+        raise InputError(*problem_lines(error, type(pantograph), where=said)) from None
 
 
 def replace_at(record: dict[str, Any], place: str, value: Any) -> None:

@@ -1,6 +1,7 @@
 """Layout and pantograph files: what is written is what is built; what is wrong is said at once."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import jsonschema
@@ -9,6 +10,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.system import layout_schema, pantograph_schema
 from catenary_fe.system.toml import LARGEST_FILE
+from catenary_fe.system.variation import varied_pantograph
 
 
 def faults(path):
@@ -170,8 +172,6 @@ def test_pantograph_file(tmp_path):
 
 
 def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
-    import tomllib
-
     schema = layout_schema()
     jsonschema.Draft202012Validator.check_schema(schema)
     for path in sorted(reference_layout.parent.glob("*.toml")):
@@ -236,3 +236,23 @@ def test_spans_and_supports_are_called_by_their_numbers_on_site(edited):
         "entry 2 of [[supports]]: at",
         "span 5 (entry 2 of [[span]]): count",
     ]
+
+
+def test_elastic_pantographs_in_files(tmp_path):
+    path, law = tmp_path / "elastic.toml", "law = [[-0.1, 150.0], [0.2, 60.0]]\n"
+    path.write_text("name = 'soft'\nforce = 120.0\nstiffness = 400.0\n")
+    assert cf.load_pantograph(path) == cf.ElasticPantograph(name="soft", force=120.0, stiffness=400.0)
+    path.write_text(law)
+    assert cf.load_pantograph(path).contact_force(0.05) == pytest.approx(105.0)
+    jsonschema.validate(tomllib.loads(law), pantograph_schema())
+    assert varied_pantograph(str(path), {"pantograph.law.1.2": 90.0}).contact_force(-1.0) == 90.0
+    for text, said in (
+        ("force = 120.0\n" + law, "force and law: give exactly one"),
+        (law + "uplift_force = 60.0\n", "unknown key uplift_force; known keys: force, law"),
+        ("law = [[0.2, 60.0], [-0.1, 150.0]]\n", "law: after 60 N at 0.2 m comes 150 N"),
+        (law + "stages = [{ mass = 7.0, stiffness = 7e3 }]\n", "unknown key law"),
+    ):
+        path.write_text(text)
+        with pytest.raises(cf.InputError) as caught:
+            cf.load_pantograph(path)
+        assert any(line.startswith(f"{path}: {said}") for line in caught.value.problems)
