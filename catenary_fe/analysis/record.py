@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 _NOTES = 3  # by themselves
-CHECKPOINT_FORM = 2  # rises when what a checkpoint holds changes
+CHECKPOINT_FORM = 3  # rises when what a checkpoint holds changes
 
 
 def make_run(
