@@ -1,7 +1,7 @@
 """What a mean force costs: a run that sets its uplift for one, over a plain run with that uplift.
 
 ``python tests/benchmarks/mean_force.py [LAYOUT PANTOGRAPH KMH]`` prints processor times of both in one
-process and their ratio, which shall be at most 2; without arguments for EN 50318:2018 AC simple and for Re 330.
+process and their ratio, which shall be at most 2. Without arguments: EN 50318:2018 AC simple and Re 330.
 """
 
 from __future__ import annotations
