@@ -23,12 +23,15 @@ from catenary_fe.views.style import (
     mark_supports,
     new_axes,
     new_panels,
+    styled,
 )
 
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
+@styled
 @checked
+@styled
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions below it.
 
@@ -112,6 +115,7 @@ def _title(part: Stretch, what: str) -> str:
     return f"{part.catenary.name}: {what}{where}"
 
 
+@styled
 def plot_elasticity(elasticity: Elasticity, *, ax: Axes | None = None) -> Axes:
     """Elasticity along the line with its extremes; spans that were not computed leave a gap."""
     ax = new_axes(ax)
