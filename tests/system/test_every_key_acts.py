@@ -115,6 +115,7 @@ PANTOGRAPH: dict[str, Any] = {
     "contact_damping": 5.0, "head.width": 1.0, "head.spring_distance": 0.6, "head.roll_inertia": 2.0,
     "head.strips": 1, "head.strip_distance": 0.4,
 }  # fmt: skip
+ELASTIC: dict[str, Any] = {"force": 250.0, "stiffness": 900.0, "law": [[0.0, 150.0], [0.1, 90.0]]}
 
 
 def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Iterator[str]:
@@ -130,7 +131,9 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
     yield from inside or [place]
 
 
-@pytest.mark.parametrize(("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH)])
+@pytest.mark.parametrize(
+    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
+)
 def test_a_value_is_known_for_every_key(schema, known):
     assert sorted(set(keys(schema, schema))) == sorted(known)
 
@@ -356,3 +359,14 @@ def test_an_arm_of_the_other_kind_keeps_the_room_alone():
 def test_an_arm_that_holds_the_height_drops_the_preload_of_the_others():
     _, arm, _ = arms("[[supports]]\nat = 2\nsteady_arm = { holds_design_height = true }")
     assert (arm.holds_height, arm.preload, arm.mass) == (True, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("key", ELASTIC)
+def test_a_key_of_an_elastic_pantograph_acts(key):
+    base: dict[str, Any] = {"force": 200.0, "stiffness": 500.0}
+    changed = {key: ELASTIC[key]} if key == "law" else base | {key: ELASTIC[key]}
+    before, after = (cf.ElasticPantograph.model_validate(record) for record in (base, changed))
+    assert [before.contact_force(z) for z in (0.0, 0.05)] != [after.contact_force(z) for z in (0.0, 0.05)]
+    if key == "law":  # beside a force, it is refused
+        with pytest.raises(cf.InputError, match="give exactly one"):
+            cf.ElasticPantograph(**base, law=ELASTIC["law"])
