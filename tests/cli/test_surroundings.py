@@ -105,7 +105,7 @@ def test_nowhere_to_keep_compiled_code(read_only_copy, tmp_path):
     surroundings = os.environ | nowhere | {"PYTHONPATH": str(read_only_copy), "TMPDIR": str(tmp_path)}
     done = subprocess.run(
         [sys.executable, "-c", "import catenary_fe; catenary_fe.simulate"],
-        env=surroundings, capture_output=True, check=False,
+        env=surroundings, cwd=CASES, capture_output=True, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, b"")
     assert list(tmp_path.glob("catenary_fe-*/*"))  # where the compiled steps would go
