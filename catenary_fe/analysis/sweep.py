@@ -314,16 +314,28 @@ def _run_task(
     numbers: list[int], cases: Sequence[SweepCase], settings: SweepSettings
 ) -> tuple[list[int], list[Record]]:
     """Run cases of one catenary; what fails is recorded, not raised."""
-    logging.getLogger("catenary_fe").setLevel(logging.ERROR)  # warnings are in the records
     try:
-        if settings.method == "linearised":
-            return numbers, _run_together(cases, settings)
-        return numbers, [_run_alone(case, settings) for case in cases]
+        with _without_warnings():
+            if settings.method == "linearised":
+                return numbers, _run_together(cases, settings)
+            return numbers, [_run_alone(case, settings) for case in cases]
     except CatenaryError as error:
         return numbers, [_failed(error)] * len(numbers)
     except Exception as error:  # one broken case must not stop the others
         text = f"unexpected {type(error).__name__}: {error}; please report it"
         return numbers, [_failed(SolverError(text))] * len(numbers)
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    """They are in the records."""
+    logger = logging.getLogger("catenary_fe")
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:

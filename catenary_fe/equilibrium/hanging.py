@@ -15,7 +15,8 @@ from catenary_fe.equilibrium.shape import HangingWire, Shape
 from catenary_fe.equilibrium.taut_wires import TautProblem, TautWires
 from catenary_fe.fe.installation import Installation, curve_pulls, wire_kinds
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
-from catenary_fe.fe.system import balanced, spring_blocks
+from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.system import balanced
 from catenary_fe.system import GRAVITY, Catenary, SolverError, SteadyArm
 
 Floats = NDArray[np.float64]

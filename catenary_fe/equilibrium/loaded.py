@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 
 from catenary_fe.equilibrium.shape import Shape
 from catenary_fe.fe.cable import Cables, hermite, inner_forces, tangent_blocks
-from catenary_fe.fe.system import System, assemble, spring_blocks
+from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.system import System, assemble
 from catenary_fe.system import SolverError
 
 Floats = NDArray[np.float64]
@@ -20,7 +22,12 @@ Progress = Callable[[float], None]
 _ITERATIONS, _LEAST_STEP, _LOAD_STEPS = 60, 1e-4, 20
 _SETTLED = 1e-9  # of the largest force on a coordinate; rounding of EA ε leaves 1e-5 N
 _FLOOR = 1e-4  # [N]
-_WINDOW = 1  # spans to both sides of a force, beyond which the line answers it linearly: the error is < 1e-5
+_NEAR, _FAR = 1, 3  # spans beside that of a force; what is left out there moves a lift by up to 3e-4
+_NARROW: dict[str, Any] = {  # in the order of the stations the factor is narrow
+    "permc_spec": "NATURAL",
+    "diag_pivot_thresh": 0.0,
+    "options": {"SymmetricMode": True},
+}
 _CORRECTIONS, _SAME = 12, 1e-4  # of a lift: change of the last correction
 
 
@@ -118,58 +125,136 @@ class LoadedLine:
 
         Raises SolverError, with the place, if no equilibrium is found.
         """
-        supports = self.shape.catenary.support_positions
+        from scipy.sparse.linalg import splu
+
+        system, supports = self.system, self.shape.catenary.support_positions
+        stiffness = system.tangent(np.zeros(system.place.size))
+        factor = splu(stiffness.tocsc(), **_NARROW)
         span = np.clip(np.searchsorted(supports, positions, side="right") - 1, 0, supports.size - 2)
-        lifts, rest = np.empty(positions.size), _AtRest(self)
+        lifts = np.empty(positions.size)
         for number in np.unique(span):
             mine = np.flatnonzero(span == number)
-            near = supports[[max(number - _WINDOW, 0), min(number + 1 + _WINDOW, supports.size - 1)]]
-            lifts[mine] = rest.lifts(positions[mine], force, near)
+            near, far = (
+                supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
+            )
+            loads = np.stack([system.gather(self.load([x], [force])) for x in positions[mine]])
+            around = _Surroundings(self, near, far)
+            moved = around.corrected(factor.solve(loads.T).T, loads)
+            if moved is None:
+                lifts[mine] = [self._lift(float(x), force) for x in positions[mine]]
+            else:
+                # what is left at the ends of that part of the line
+                residual = loads - (stiffness @ moved.T).T
+                residual[:, around.part] += around.extra(moved)
+                lifts[mine] = (loads * (moved + factor.solve(residual.T).T)).sum(axis=1) / force
             if progress:
                 progress((int(mine[-1]) + 1) / positions.size)
         return lifts
 
+    def _lift(self, x: float, force: float) -> float:
+        """[m], by Newton's method on the whole line."""
+        return float(self.load([x], [1.0]) @ self.solve([x], [force]))
 
-class _AtRest:
-    """The line's stiffness at rest, and what it takes to correct its answer for large motions.
 
-    Each answer is that of the tangent at rest, with slack droppers and turned arms put into it by a Woodbury
-    update, corrected by what wires and droppers near the force do otherwise, until nothing changes.
+class _Surroundings:
+    """The line near a force, where it answers otherwise than its tangent at rest.
+
+    Wires, droppers and arms are taken as they are between the places ``near`` [m]; what they do otherwise
+    is answered by the tangent at rest between the places ``far``, slack droppers and turned arms put into it
+    by a Woodbury update, until nothing changes.
     """
 
-    def __init__(self, line: LoadedLine) -> None:
+    def __init__(self, line: LoadedLine, near: Floats, far: Floats) -> None:
         from scipy.sparse.linalg import splu
 
-        self.line, self.system = line, line.system
-        self.stiffness = self.system.tangent(np.zeros(self.system.place.size))
-        self._factor = splu(  # in the order of the stations the factor is narrow
-            self.stiffness.tocsc(),
-            permc_spec="NATURAL",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        system, mesh = line.system, line.shape.mesh
+        x = np.repeat(np.concatenate([wire.x for wire in mesh.wires]), 2 * system.axes)
+        # at its left end this part of the line is held, at its right end it moves along as under weights
+        around = (x > far[0] + 1e-6) & (x <= far[1] + 1e-6) if far[0] > 0 else x <= far[1] + 1e-6
+        free = system.place[around & (system.place >= 0)]
+        self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
+        alone = system.between(x, far[0] - 1e-6, far[1] + 1e-6)
+        self._stiffness = alone.tangent(np.zeros(x.size))[self.part, self.part]
+        self._factor = splu(self._stiffness.tocsc(), **_NARROW)
+        self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
+        rest = self._reference[self._index].reshape(-1, 4, system.axes)
+        self._blocks, self._inner = tangent_blocks(self._cables, rest), inner_forces(self._cables, rest)
         self._columns: dict[tuple[bool, int], Floats] = {}
 
-    def lifts(self, positions: Floats, force: float, near: Floats) -> Floats:
-        """[m], shape (points,); near : [m] between which wires and springs are taken as they are."""
-        system, line = self.system, self.line
-        around = _Surroundings(line, near)
-        free = np.stack([system.gather(line.load([x], [force])) for x in positions])
-        moved = self._factor.solve(free.T).T
-        lifts: Floats = (free * moved).sum(axis=1) / force
+    def _take(self, inside: System) -> None:
+        """Elements and springs, their coordinates numbered anew."""
+        index, springs = inside.elements(), (inside.droppers, inside.arms)
+        used = np.unique(np.concatenate([index.ravel(), *(s.index().ravel() for s in springs)]))
+        self.axes, self._reference, self._place = inside.axes, inside.reference[used], inside.place[used]
+        self._index, self._cables = np.searchsorted(used, index), inside.cables
+        self._springs = [
+            replace(s, first=np.searchsorted(used, s.first), last=np.searchsorted(used, s.last))
+            for s in springs
+        ]
+        self._gather = inside.transformation[used][:, self.part].T.tocsr()
+
+    def corrected(self, linear: Floats, loads: Floats) -> Floats | None:
+        """Answers, shape (points, free), from those of the tangent at rest; None where they do not settle.
+
+        loads : [N], shape (points, free)
+        """
+        moved, before = linear.copy(), (loads * linear).sum(axis=1)
+        added = np.zeros_like(linear[:, self.part])
         for _ in range(_CORRECTIONS):
-            before = lifts
-            spread = system.spread(moved)
-            residual = free - (self.stiffness @ moved.T).T + around.extra(spread)
-            moved = moved + self._updated(self._factor.solve(residual.T).T, around.changes(spread))
-            lifts = (free * moved).sum(axis=1) / force
+            residual = self.extra(moved) - (self._stiffness @ added.T).T
+            step = self._updated(self._factor.solve(residual.T).T, self._changes(self._near(moved)))
+            added += step
+            moved[:, self.part] += step
+            lifts = (loads * moved).sum(axis=1)
             if np.abs(lifts - before).max() <= _SAME * np.abs(lifts).max():
-                return lifts
-        whole = [system.gather(line.solve([x], [force])) for x in positions]
-        return np.array([f @ u / force for f, u in zip(free, whole, strict=True)])
+                return moved
+            before = lifts
+        return None
+
+    def _near(self, moved: Floats) -> Floats:
+        """Shape (points, coordinates inside), of the free ones."""
+        return np.where(self._place >= 0, moved[:, self._place], 0.0)
+
+    def extra(self, free: Floats) -> Floats:
+        """[N], shape (points, part): what the line's forces have that its tangent at rest has not.
+
+        free : displacements, shape (points, free)
+        """
+        moved = self._near(free)
+        points, size = moved.shape
+        many = Cables(*(np.tile(values, points) for values in vars(self._cables).values()))
+        here = moved[:, self._index]
+        total = (self._reference[self._index] + here).reshape(-1, 4, self.axes)
+        inner = inner_forces(many, total).reshape(points, *self._index.shape)
+        linear = np.einsum("eij,pej->pei", self._blocks, here)
+        found = _summed(linear + self._inner.reshape(self._index.shape) - inner, self._index, size)
+        for springs in self._springs:
+            index, blocks = springs.index(), springs.blocks(self._reference, taut=True)
+            linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
+            now = springs.forces(self._reference + moved)
+            found += _summed(now - springs.forces(self._reference) + linear, index, size)
+        extra: Floats = (self._gather @ found.T).T
+        return extra
+
+    def _changes(self, moved: Floats) -> dict[tuple[bool, int], Floats]:
+        """Slack droppers and turned arms: change of stiffness [N/m], shape (points, axes, axes).
+
+        moved : shape (points, coordinates inside). Keys are whether it is a dropper, and its number
+        """
+        found = {}
+        for springs in self._springs:
+            rest, now = springs.span(self._reference), springs.span(self._reference + moved)
+            at_rest = spring_blocks(rest, springs.tension(rest), springs.stiffness)
+            if springs.pulls_only:
+                change = -at_rest * (springs.tension(now) <= 0)[:, :, None, None]
+            else:  # its axial force changes little: it turns
+                change = spring_blocks(now, springs.tension(rest), springs.stiffness) - at_rest
+            for i in np.flatnonzero(change.any(axis=(0, 2, 3))).tolist():
+                found[springs.pulls_only, i] = change[:, i]
+        return found
 
     def _updated(self, answers: Floats, changes: dict[tuple[bool, int], Floats]) -> Floats:
-        """Answers of the line at rest, shape (points, free), as those of the line with changed springs.
+        """Answers of the line at rest, shape (points, part), as those of the line with changed springs.
 
         changes : of stiffness [N/m], shape (points, axes, axes), by spring
         """
@@ -177,7 +262,7 @@ class _AtRest:
             return answers
         from scipy.sparse import vstack
 
-        points, axes = len(answers), self.system.axes
+        points, axes = len(answers), self.axes
         rows = vstack([self._span_change(*spring) for spring in changes]).tocsr()
         columns = np.concatenate([self._column(*spring) for spring in changes], axis=1)
         blocks = np.stack(list(changes.values()), axis=1)
@@ -193,77 +278,22 @@ class _AtRest:
         return updated
 
     def _span_change(self, dropper: bool, number: int) -> Any:
-        """Sparse, shape (axes, free): of a spring's span with the free coordinates."""
+        """Sparse, shape (axes, part): of a spring's span with the free coordinates."""
         from scipy.sparse import csr_matrix
 
-        axes = self.system.axes
-        springs = self.system.droppers if dropper else self.system.arms
-        place = self.system.place[springs.index()[number]]
-        signs = np.repeat([-1.0, 1.0][: place.size // axes], axes)
-        moves = place >= 0
-        entries = signs[moves], (np.arange(place.size)[moves] % axes, place[moves])
-        return csr_matrix(entries, shape=(axes, self.system.size))
+        springs = self._springs[0 if dropper else 1]
+        at = springs.index()[number]
+        signs = np.repeat([-1.0, 1.0][: at.size // self.axes], self.axes)
+        shape = (self.axes, self._reference.size)
+        change = csr_matrix((signs, (np.arange(at.size) % self.axes, at)), shape=shape)
+        return change @ self._gather.T
 
     def _column(self, dropper: bool, number: int) -> Floats:
-        """Shape (free, axes): answers of the line to forces that open a spring's span."""
+        """Shape (part, axes): answers of the line to forces that open a spring's span."""
         if (dropper, number) not in self._columns:
             row = self._span_change(dropper, number)
             self._columns[dropper, number] = self._factor.solve(row.toarray().T)
         return self._columns[dropper, number]
-
-
-class _Surroundings:
-    """Elements, droppers and arms near a force, at many displacements at once."""
-
-    def __init__(self, line: LoadedLine, near: Floats) -> None:
-        system, mesh = line.system, line.shape.mesh
-        self.system = system
-        x = np.repeat(np.concatenate([wire.x for wire in mesh.wires]), 2 * system.axes)
-        inside = (x >= near[0] - 1e-6) & (x <= near[1] + 1e-6)
-        kept = inside[system.first]
-        self.index = system.first[kept][:, None] + np.arange(4 * system.axes)
-        self.cables = Cables(*(values[kept] for values in vars(system.cables).values()))
-        rest = system.reference[self.index].reshape(-1, 4, system.axes)
-        self.blocks, self.inner = tangent_blocks(self.cables, rest), inner_forces(self.cables, rest)
-        self.droppers, self.arms = (s.only(inside[s.first]) for s in (system.droppers, system.arms))
-        self._numbers = [np.flatnonzero(inside[s.first]) for s in (system.droppers, system.arms)]
-
-    def extra(self, moved: Floats) -> Floats:
-        """[N], shape (points, free): what the line's forces have that its tangent at rest has not.
-
-        moved : shape (points, all)
-        """
-        system, (points, size) = self.system, moved.shape
-        many = Cables(*(np.tile(values, points) for values in vars(self.cables).values()))
-        here = moved[:, self.index]
-        total = (system.reference[self.index] + here).reshape(-1, 4, system.axes)
-        inner = inner_forces(many, total).reshape(points, *self.index.shape)
-        linear = np.einsum("eij,pej->pei", self.blocks, here)
-        found = _summed(linear + self.inner.reshape(self.index.shape) - inner, self.index, size)
-        for springs in (self.droppers, self.arms):
-            index, blocks = springs.index(), springs.blocks(system.reference, taut=True)
-            linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
-            now = springs.forces(system.reference + moved)
-            found += _summed(now - springs.forces(system.reference) + linear, index, size)
-        return system.gather(found)
-
-    def changes(self, moved: Floats) -> dict[tuple[bool, int], Floats]:
-        """Slack droppers and turned arms: change of stiffness [N/m], shape (points, axes, axes).
-
-        moved : shape (points, all). Keys are whether it is a dropper, and its number
-        """
-        reference, found = self.system.reference, {}
-        for springs, numbers in zip((self.droppers, self.arms), self._numbers, strict=True):
-            rest = springs.span(reference)
-            at_rest = spring_blocks(rest, springs.tension(rest), springs.stiffness)
-            now, tension = springs.span(reference + moved), springs.tension(rest)
-            if springs.pulls_only:
-                change = -at_rest * (springs.tension(now) <= 0)[:, :, None, None]
-            else:  # its axial force changes little: it turns
-                change = spring_blocks(now, tension, springs.stiffness) - at_rest
-            for i in np.flatnonzero(change.any(axis=(0, 2, 3))):
-                found[springs.pulls_only, int(numbers[i])] = change[:, i]
-        return found
 
 
 def _summed(values: Floats, index: Integers, size: int) -> Floats:

@@ -1,6 +1,7 @@
 """Sweeps: every combination once, resumable, failures recorded, the same on a cluster."""
 
 import csv
+import logging
 import os
 import signal
 import subprocess
@@ -75,6 +76,16 @@ def test_failures_are_recorded_case_by_case(short, pantograph, tmp_path):
     assert "wrong unit" in records[1]["error"]
     assert "would have to push" in records[2]["error"]
     assert records[3]["error"] == "x is no value"
+
+
+def test_a_sweep_leaves_the_log_as_it_was(short, pantograph, tmp_path):
+    """Its warnings are in the records; a run after it says its own again."""
+    logger = logging.getLogger("catenary_fe")
+    before = logger.level
+    fault = cf.InputError("broken")
+    case = SweepCase(values={}, catenary=short, pantographs=(pantograph,), speed=-1.0)
+    run_sweep([case, BrokenCase(values={}, error=fault)], SweepSettings(), tmp_path, jobs=1)
+    assert logger.level == before
 
 
 def test_the_command_runs_all_combinations(layout, tmp_path, capsys):

@@ -88,28 +88,32 @@ def test_rayleigh_damping_leaves_springs_of_supports_and_arms_alone(short_shape,
     assert sorted(more[more > 1e-3]) == pytest.approx([7.0] * 3 + [50.0] * 3, rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", ["linear", "nonlinear"])
-def test_rayleigh_damping_of_a_dropper_is_beta_times_its_stiffness(short_shape, kind):
-    """Besides that of the wires, which its own damping leaves as it is."""
+def test_rayleigh_damping_of_wires_and_droppers(short_shape):
+    """Of the wires β times their stiffness of EA, EI and tension; of a dropper β k beside its own damping."""
     line, beta, k, own = short_shape.catenary, 1e-3, 1e5, 30.0
     assert {d.stiffness for d in line.droppers} == {k}
     spans = tuple(s.replace(droppers=tuple(d.replace(damping=own) for d in s.droppers)) for s in line.spans)
-    droppers = damped(short_shape, kind, spans=spans)  # of own dampers alone
-    more = damped(short_shape, kind, beta=beta, spans=spans) - damped(short_shape, kind, beta=beta)
-    assert abs(more - droppers).max() <= 1e-6 * abs(droppers).max()
-    wires = damped(short_shape, kind, beta=beta) - beta * k / own * droppers
-    model = linear_model(line, short_shape.mesh, short_shape.installation)
-    if kind == "linear":  # what is left is that of the wires: EA, EI and tension, no dropper in it
-        rows = model.dropper_rows
-        left = model.stiffness - rows.T @ (k * rows)
-        up = np.zeros(model.size)
-        up[model.heights[model.heights >= 0]] = 1.0
-        assert up @ wires @ up == pytest.approx(beta * (up @ left @ up - springs(line)), rel=1e-3)
+    changed = line.replace(spans=spans, damping=cf.RayleighDamping(beta=beta))
+    parts = changed, short_shape.mesh, short_shape.installation
+    model, large = linear_model(*parts), nonlinear_model(*parts)
+    for found in (model.dropper_damping, large.system.droppers.damping):
+        assert found == pytest.approx(np.full(len(line.droppers), own + beta * k))
+    rows, places = model.dropper_rows, model.heights[model.heights >= 0]
+    wires_damping = model.damping - rows.T @ ((own + beta * k) * rows)
+    wires_stiffness = model.stiffness - rows.T @ (k * rows)
+    bent = np.zeros(model.size)
+    bent[places] = np.cos(np.arange(places.size))
+    bent[model.contacts[0].supports] = 0.0  # there arms and supports hold the wires
+    damped_by, held_by = (matrix @ bent for matrix in (wires_damping, beta * wires_stiffness))
+    away = np.setdiff1d(places, at_springs(short_shape, model))
+    assert damped_by[away] == pytest.approx(held_by[away], abs=1e-3 * np.abs(held_by).max())
 
 
-def springs(line):
-    """[N/m], vertical, that hold the line where all of it is raised: of supports and arms."""
-    return sum(s.messenger_stiffness + s.steady_arm.stiffness for s in line.supports[1:-1])
+def at_springs(shape, model):
+    """Numbers of the heights at supports, of both wires."""
+    mesh = shape.mesh
+    nodes = [mesh.first_nodes[i] + wire.supports for i, wire in enumerate(mesh.wires)]
+    return model.heights[np.concatenate(nodes)]
 
 
 @pytest.mark.parametrize("kind", ["linear", "nonlinear"])

@@ -101,5 +101,6 @@ def test_a_messenger_wire_that_hardly_anything_pulls(reference_layout, tmp_path)
     ]
     path.write_text(document(record))
     code, out, err = call("form", path, "--json")
-    assert (code, out) == (4, "")
-    assert "hangs so low that it folds back" in err
+    assert (code, out) == (3, "")
+    assert "has no room: the wire it hangs on lies" in err
+    assert "raise system_height or the messenger wire's tension of 0.011 N" in err

@@ -15,7 +15,7 @@ from catenary_fe.equilibrium import Shape
 
 if TYPE_CHECKING:
     from catenary_fe.fe.nonlinear_model import NonlinearModel
-    from catenary_fe.fe.system import Springs
+    from catenary_fe.fe.spring import Springs
 
 Floats = NDArray[np.float64]
 
