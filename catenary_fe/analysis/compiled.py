@@ -5,9 +5,11 @@ from __future__ import annotations
 import hashlib
 import inspect
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import ModuleType
 from typing import Any, TypeVar, cast
+
+from catenary_fe.results.files import own_temporary_folder
 
 numba: Any
 try:
@@ -30,9 +32,11 @@ def plain(function: _Function) -> _Function:
 
 
 def kept(function: _Function) -> _Function:
-    """Compile on first use and keep the machine code beside the source, with all compiled functions it calls.
+    """Compile on first use and keep the machine code, with that of all compiled functions it calls.
 
-    What is kept is found by the function's file and the values it closes over. Changes in the functions that
+    It is kept beside the source, where that cannot be written in the user's cache folder, else in a folder of
+    the user's for temporary files; where there is no such place either, it is compiled in each process. What
+    is kept is found by the function's file and the values it closes over. Changes in the functions that
     it calls go unseen otherwise: let it close over their :func:`stamp`.
     """
     return _compiled(function, keep=True)
@@ -47,8 +51,51 @@ def _compiled(function: _Function, keep: bool) -> _Function:
     if numba is None:
         return function
     # to unpack Python arguments takes longer to compile than most functions that only others call
-    options = {"cache": True} if keep else {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return cast(_Function, numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function))
+    options = {} if keep else {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    made = numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function)
+    if keep:
+        _keep(made)
+    return cast(_Function, made)
+
+
+def _keep(made: Any) -> None:
+    """Let numba keep the machine code of a function, wherever there is a place for it."""
+    try:
+        made.enable_caching()
+    except RuntimeError:  # neither the program's folder nor the user's own can be written
+        with _cached_in(own_temporary_folder()), suppress(RuntimeError):
+            made.enable_caching()
+    made._cache = _Forgiving(made._cache)
+
+
+@contextmanager
+def _cached_in(folder: str | None) -> Iterator[None]:
+    """Let numba look for its files in this folder, too."""
+    config = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = folder or before
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+class _Forgiving:
+    """numba's store of machine code, whose faults (a full disk, a damaged file) only cost time."""
+
+    def __init__(self, store: Any) -> None:
+        self._store = store
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._store, name)
+
+    def load_overload(self, *arguments: Any) -> Any:
+        with suppress(Exception):  # what unpickling may raise has no end
+            return self._store.load_overload(*arguments)
+
+    def save_overload(self, *arguments: Any) -> None:
+        with suppress(Exception):
+            self._store.save_overload(*arguments)
 
 
 @contextmanager

@@ -9,32 +9,42 @@ from numpy.typing import NDArray
 
 from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, InputError, Pantograph, SolverError
+from catenary_fe.system import AerodynamicForce, AnyPantograph, InputError, Pantograph, SolverError
 from catenary_fe.system.current_collection import MEAN_FORCE_TOLERANCE
 
 Floats = NDArray[np.float64]
 
 MEAN_FORCE_RUNS = 6
+SLOPES = 0.3, 3.0  # of a mean over its uplift, at least and at most: others are chance
+TOO_SMALL = 1e-6  # [N]
 
 
 class MeanForce:
     """Uplifts [N] of a run's pantographs, and the next ones to try, by secants.
 
     uplifts : shape (pantographs,), to run with
+    sought : whether any pantograph asks for a mean force
 
     Raises InputError where uplift and air push a pantograph down.
     """
 
     def __init__(self, pantographs: Sequence[AnyPantograph], speed: float) -> None:
         self.uplifts = _uplifts(pantographs, speed)
+        self._pantographs = pantographs
         self._targets = [p.target_mean_force(speed) for p in pantographs]
+        self.sought = any(target is not None for target in self._targets)
         self._before: tuple[Floats, Floats] | None = None
+        self._slope: Floats | None = None  # what a newton more adds to a mean, by the last runs
+        self._known: Floats | None = None  # likewise, by runs of another kind
         self._runs = 0
 
     def state(self) -> dict[str, Floats]:
         """What is known so far, as arrays."""
-        before = self._before or (self.uplifts, np.full_like(self.uplifts, np.nan))
-        return {"uplifts": self.uplifts, "before": np.array(before), "runs": np.array(float(self._runs))}
+        nothing = np.full_like(self.uplifts, np.nan)
+        before = self._before or (self.uplifts, nothing)
+        slope = nothing if self._known is None else self._known
+        runs = np.array(float(self._runs))
+        return {"uplifts": self.uplifts, "before": np.array(before), "slope": slope, "runs": runs}
 
     def take_up(self, checkpoint: Checkpoint) -> None:
         """Go on from what a checkpoint carries, and let it carry on."""
@@ -46,33 +56,65 @@ class MeanForce:
         self.uplifts, self._runs = state["uplifts"], int(state["runs"])
         uplifts, means = state["before"]
         self._before = None if np.isnan(means).any() else (uplifts, means)
+        self._known = None if np.isnan(state["slope"]).any() else state["slope"]
+
+    def given(self) -> list[AnyPantograph]:
+        """The pantographs with these uplifts, not asking for a mean force. Raises InputError."""
+        still = AerodynamicForce()
+        return [
+            p.replace(uplift_force=float(uplift), mean_force=None, aerodynamic_force=still)
+            if isinstance(p, Pantograph)
+            else p
+            for p, uplift in zip(self._pantographs, self.uplifts, strict=True)
+        ]
+
+    def aim(self, run: Run) -> float:
+        """Set the next uplifts by a run with these ones; returns by how much [N] it misses a mean force."""
+        means, goals = self._means(run)
+        self._slope = self._slope_at(means)
+        self._before = self.uplifts, means
+        self.uplifts = self.uplifts + (goals - means) / self._slope
+        return float(np.abs(goals - means).max())
+
+    def begin_anew(self) -> None:
+        """Runs to come are of another kind: of those before, only how a mean follows its uplift is kept."""
+        self._known = self._slope
+        self._before, self._runs = None, 0
 
     def reached(self, run: Run) -> bool:
         """Whether a run with these uplifts has the means that are asked for; if not, other uplifts are set.
 
         Raises SolverError when it takes too many runs.
         """
-        if all(target is None for target in self._targets):
+        if not self.sought:
             return True
         self._runs += 1
-        means = np.array([s.mean for s in run.contact_force_statistics()])
-        goals = np.array([m if t is None else t for m, t in zip(means, self._targets, strict=True)])
-        if np.abs(means - goals).max() <= MEAN_FORCE_TOLERANCE:
+        if self.aim(run) <= MEAN_FORCE_TOLERANCE:
             return True
         if self._runs == MEAN_FORCE_RUNS:
+            means, goals = self._means(run)
             raise SolverError(
                 f"mean contact force: after {self._runs} runs the means are {np.round(means, 2).tolist()} N,"
                 f" not {np.round(goals, 2).tolist()} N; give an uplift_force instead of a mean_force"
             )
-        slope = means / self.uplifts
-        if self._before is not None:
-            step = self.uplifts - self._before[0]
-            moved = np.abs(step) > 1e-6
-            secant = (means - self._before[1]) / np.where(moved, step, 1.0)
-            slope = np.where(moved & (secant > 0.3) & (secant < 3), secant, slope)
-        self._before = self.uplifts, means
-        self.uplifts = self.uplifts + (goals - means) / slope
         return False
+
+    def _means(self, run: Run) -> tuple[Floats, Floats]:
+        """Mean contact forces of a run, and those that it should have, the same where none is asked for."""
+        means = np.array([s.mean for s in run.contact_force_statistics()])
+        return means, np.array([m if t is None else t for m, t in zip(means, self._targets, strict=True)])
+
+    def _slope_at(self, means: Floats) -> Floats:
+        low, high = SLOPES
+        slope = self._known
+        if slope is None:
+            slope = np.clip(means / np.maximum(self.uplifts, TOO_SMALL), low, high)
+        if self._before is None:
+            return slope
+        step = self.uplifts - self._before[0]
+        moved = np.abs(step) > TOO_SMALL
+        secant = (means - self._before[1]) / np.where(moved, step, 1.0)
+        return np.where(moved & (secant > low) & (secant < high), secant, slope)
 
 
 def _uplifts(pantographs: Sequence[AnyPantograph], speed: float) -> Floats:

@@ -8,6 +8,7 @@ import numpy as np
 
 from catenary_fe.equilibrium import Shape
 from catenary_fe.results.modes import Modes, WireShapes
+from catenary_fe.system import counted
 from catenary_fe.system.arguments import checked, number, whole
 
 _HIGHEST = 1e4  # [Hz] no mesh of a line resolves more
@@ -76,8 +77,8 @@ def mode_warnings(shape: Shape, modes: Modes) -> list[str]:
     if not above:
         return []
     return [
-        f"{above} modes, up to {modes.frequencies[-1]:.0f} Hz, lie above {resolved:.0f} Hz, where waves are"
-        " shorter than two elements; refine the mesh, or leave them out"
+        f"above {resolved:.0f} Hz waves are shorter than two elements: {counted(above, 'mode')}, up to"
+        f" {modes.frequencies[-1]:.0f} Hz; refine the mesh, or leave them out"
     ]
 
 

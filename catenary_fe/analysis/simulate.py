@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from catenary_fe.analysis.checkpoint import Checkpoint
 from catenary_fe.analysis.checks import check_heads, check_pantographs, check_speed, run_warnings
 from catenary_fe.analysis.compiled import COMPILED
-from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
+from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary, aimed, share_of
 from catenary_fe.analysis.linearised.start import can_be_compiled
 from catenary_fe.analysis.mean_force import MeanForce
 from catenary_fe.analysis.partial import kept_when_stopped
@@ -25,7 +25,7 @@ from catenary_fe.analysis.resources import check_memory, demand
 from catenary_fe.equilibrium import Shape
 from catenary_fe.fe.solver_settings import TimeSettings
 from catenary_fe.results import Run
-from catenary_fe.system import AnyPantograph, CatenaryError, InputError
+from catenary_fe.system import AnyPantograph, CatenaryError, InputError, Interrupted, counted
 from catenary_fe.system.arguments import checked, number, numbers, one_of
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 Method = Literal["nonlinear", "linearised", "exudyn"]
+
+AIMING = 0.1  # share of linearised runs in the work of one that follows them
 
 Pairs = Sequence[tuple[AnyPantograph, float]]
 Drive = Callable[[Pairs, float, Floats, int, Progress | None, Checkpoint | None], "Journey"]
@@ -70,8 +72,8 @@ def simulate(
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
-    Where a pantograph asks for a mean force, the run is repeated with another uplift until the mean over the
-    evaluated spans is within 0.1 N of it.
+    Where a pantograph asks for a mean force, linearised runs find the uplift for it. Until the mean over the
+    evaluated spans is within 0.1 N of it, the run is repeated with another uplift, which is seldom needed.
 
     shape : the catenary in static equilibrium, with its mesh
     speed : [m/s]
@@ -124,7 +126,11 @@ def simulate(
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
-    return _told(_until_mean_force(case, time, set_up, label, progress, keeper), len(warnings))
+    force = MeanForce(pantographs, speed)
+    if force.sought and COMPILED and not (keeper and keeper.kept):
+        force, progress = _aimed(shape, case, time, progress)
+    run = _until_mean_force(case, time, force, set_up, label, progress, keeper)
+    return _told(run, len(warnings))
 
 
 def _told(run: Run, known: int) -> Run:
@@ -169,9 +175,21 @@ def _linearised(
     return result
 
 
+def _aimed(
+    shape: Shape, case: Case, time: TimeSettings, progress: Progress | None
+) -> tuple[MeanForce, Progress | None]:
+    """Uplifts to begin with, found by linearised runs, and the progress of what is left to do."""
+    try:
+        force = aimed(shape, case, time, share_of(progress, 0.0, AIMING))
+    except KeyboardInterrupt as error:
+        raise error if isinstance(error, Interrupted) else Interrupted() from None
+    return force, share_of(progress, AIMING, 1 - AIMING)
+
+
 def _until_mean_force(
     case: Case,
     time: TimeSettings,
+    force: MeanForce,
     set_up: Callable[[], Drive],
     label: Callable[[Floats, Journey], Run],
     progress: Progress | None,
@@ -181,7 +199,6 @@ def _until_mean_force(
 
     label : makes a run of uplifts and a journey
     """
-    force = MeanForce(case.pantographs, case.speed)
     steps = int(np.floor(case.distance / (case.speed * time.step) + 1e-9))
     if keeper:
         force.take_up(keeper)
@@ -244,7 +261,9 @@ def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Pla
         positions = [margin]
     start = np.atleast_1d(numbers("positions", positions))
     if start.shape != (count,):
-        raise InputError(f"{start.size} positions for {count} pantographs: give one for each")
+        raise InputError(
+            f"{counted(start.size, 'position')} for {counted(count, 'pantograph')}: give one for each"
+        )
     for value in start:
         if not margin <= value < length - margin:
             raise InputError(

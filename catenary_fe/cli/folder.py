@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from catenary_fe.results import Run
 
 
+PARTIAL = "partial"  # folder inside an output folder, for what there is of a run that was stopped
+
+
 class Folder:
     """Files written aside, to be moved into place together.
 
@@ -129,6 +132,11 @@ def run_in(path: str | Path) -> Run:
 
     path = Path(path)
     if path.is_dir() and not (path / "run.nc").is_file():
+        if (path / PARTIAL / "run.nc").is_file():
+            raise InputError(
+                f"{path}: holds no whole run; what there is of one that was stopped is in {path / PARTIAL}:"
+                " give that folder"
+            )
         raise InputError(f"{path}: holds no run.nc; give a folder that 'catenary-fe run ... -o DIR' wrote")
     return load_run(path / "run.nc" if path.is_dir() else path)
 
@@ -139,7 +147,7 @@ def read_record(path: Path) -> dict[str, Any]:
     Raises InputError where it is damaged.
     """
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8-sig"))  # editors may put a mark before it
     except FileNotFoundError:
         return {}
     except OSError as error:

@@ -22,11 +22,12 @@ from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.selfcheck import selfcheck
+from catenary_fe.cli.surroundings import prepare
 from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
 from catenary_fe.cli.view import view
-from catenary_fe.system import CatenaryError, InputError, Interrupted
+from catenary_fe.system import CatenaryError, InputError, Interrupted, counted
 
 EPILOG = """\b
 Examples:
@@ -96,7 +97,7 @@ def main(arguments: list[str] | None = None) -> int:
         for line in lines[:MOST_LINES]:
             say("error", line, "red")
         if len(lines) > MOST_LINES:
-            say("error", f"and {len(lines) - MOST_LINES} more faults like these", "red")
+            say("error", f"and {counted(len(lines) - MOST_LINES, 'more fault')} like these", "red")
         return error.exit_code
     except click.ClickException as error:
         error.show()
@@ -116,6 +117,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def entry() -> None:
     """Entry point of the installed command."""
+    prepare()
     signal.signal(signal.SIGTERM, _stop)
     sys.exit(main())
 

@@ -18,7 +18,7 @@ import click
 from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, progress_bar, quiet_option
 from catenary_fe.results.files import write_text
-from catenary_fe.system import InputError
+from catenary_fe.system import InputError, counted
 
 if TYPE_CHECKING:
     from catenary_fe.views.index_page import PageEntry
@@ -67,7 +67,8 @@ def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet
         print_json({"figures": drawn, "failed": {e.name: e.failure for e in entries if e.failure}})
     elif not quiet:
         click.echo(
-            f"{len(entries) - len(failed)} figures drawn, {len(failed)} failed: {folder / 'index.html'}"
+            f"{counted(len(entries) - len(failed), 'figure')} drawn, {len(failed)} failed:"
+            f" {folder / 'index.html'}"
         )
     return 1 if failed else 0
 

@@ -12,7 +12,7 @@ import click
 
 from catenary_fe.cli.completion import pantograph_names
 from catenary_fe.cli.criteria import evaluated, exit_code, print_criteria, with_elasticity
-from catenary_fe.cli.folder import Folder, output_folder, read_record
+from catenary_fe.cli.folder import PARTIAL, Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.schedules import write_schedules
@@ -34,11 +34,12 @@ from catenary_fe.cli.terminal import (
     working,
 )
 from catenary_fe.system import (
+    AnyPantograph,
     InputError,
     Interrupted,
-    Pantograph,
     PowerSystem,
     SolverError,
+    counted,
     layout_warnings,
     load_pantograph,
 )
@@ -59,7 +60,6 @@ much for the machine is refused before the run. A run that is stopped or fails i
 in DIR/partial."""
 
 
-PARTIAL = "partial"  # folder inside the output folder
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
@@ -285,13 +285,15 @@ def write_run(
         )
 
 
-def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[Pantograph]:
+def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[AnyPantograph]:
     """One pantograph a position; a single name serves for all positions."""
     loaded = [load_pantograph(name) for name in names]
     if len(loaded) == 1 and len(positions) > 1:
         return loaded * len(positions)
     if len(loaded) > 1 and len(positions) not in (0, len(loaded)):
-        raise InputError(f"{len(positions)} positions for {len(loaded)} pantographs: give one for each")
+        raise InputError(
+            f"{counted(len(positions), 'position')} for {len(loaded)} pantographs: give one for each"
+        )
     return loaded
 
 

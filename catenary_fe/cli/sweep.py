@@ -25,7 +25,7 @@ from catenary_fe.cli.terminal import (
     say,
     spans_option,
 )
-from catenary_fe.system import Catenary, InputError, PowerSystem
+from catenary_fe.system import Catenary, InputError, PowerSystem, counted
 from catenary_fe.system.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def sweep(
         time=TimeSettings(step=time_step_ms / 1e3),
     )
     cases = _cases(layout, axes, positions, spans)
-    with progress_bar(f"{count} cases", not quiet) as progress, _kept(output):
+    with progress_bar(counted(count, "case"), not quiet) as progress, _kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -156,8 +156,8 @@ def sweep(
     lost = [record for record in failed if LOST in record]
     if lost:
         click.echo(
-            f"{len(lost)} of {len(records)} cases were lost with their processes; the others are kept in"
-            f" {output}: start again to try the lost ones once more",
+            f"lost with their processes: {len(lost)} of {counted(len(records), 'case')}; the others are kept"
+            f" in {output}: start again to try the lost ones once more",
             err=True,
         )
     if failed and (lost or len(failed) == len(records)):

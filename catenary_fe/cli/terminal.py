@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -12,7 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from catenary_fe.cli.surroundings import writes_unicode
 from catenary_fe.system import Catenary, CatenaryError, load_catenary
+from catenary_fe.system.files import MOST_SPANS
+
+_RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
 
 if TYPE_CHECKING:
     from catenary_fe.equilibrium import Shape
@@ -29,19 +34,28 @@ output_option = click.option(
 
 
 def _span_numbers(context: click.Context, parameter: click.Parameter, text: str | None) -> list[int] | None:
+    """Numbers and ranges, each span once, in the order given."""
     if text is None:
         return None
-    try:
-        return [int(part) for part in text.split(",")]
-    except ValueError:
-        raise click.BadParameter(f"{text!r} is not a list of span numbers such as 5,6") from None
+    numbers: dict[int, None] = {}
+    for part in text.split(","):
+        found = _RANGE.fullmatch(part)
+        first, last = (int(found[1]), int(found[2] or found[1])) if found else (1, 0)
+        if not 0 <= last - first < MOST_SPANS:
+            raise click.BadParameter(
+                f"{text!r} is not a list of spans or rising ranges such as 5,6 or 5-17,20"
+            )
+        numbers |= dict.fromkeys(range(first, last + 1))
+    return list(numbers)
 
 
 spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6; unset: the layout's."
+    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6 or 5-17; unset: the layout's."
 )
 shown_spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to show, e.g. 5,6; unset: around the evaluated ones."
+    "--spans",
+    callback=_span_numbers,
+    help="Spans to show, e.g. 5,6 or 5-17; unset: around the evaluated ones.",
 )
 drawn_spans_option = click.option(
     "--spans", callback=_span_numbers, help="Spans to draw, e.g. 5,6; unset: the line, and two spans closer."
@@ -56,7 +70,8 @@ def read_layout(path: str, planar: bool) -> Catenary:
 
 def print_json(value: Any) -> None:
     """One JSON document on standard output; not-a-number never appears in it."""
-    click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))
+    lossy = not writes_unicode(sys.stdout)
+    click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=lossy))
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
@@ -113,7 +128,8 @@ def working(text: str, shown: bool) -> AbstractContextManager[Any]:
         return nullcontext()
     from rich.console import Console
 
-    return Console(stderr=True).status(text)
+    spinner = "dots" if writes_unicode(sys.stderr) else "line"
+    return Console(stderr=True).status(text, spinner=spinner)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary, InputError, counted
 from catenary_fe.system.arguments import numbers
 
 Floats = NDArray[np.float64]
@@ -106,11 +106,15 @@ def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) 
         given = [d.length for d in catenary.droppers]
         missing = [n for n, v in zip(names, given, strict=True) if v is None]
         if missing:
-            raise InputError(f"{missing[0]} has no length ({len(missing)} droppers in all); give all lengths")
+            raise InputError(
+                f"{missing[0]} has no length ({counted(len(missing), 'dropper')} in all); give all lengths"
+            )
         lengths = np.array(given, dtype=float)
     values = numbers("lengths", lengths)
     if values.shape != (len(names),):
-        raise InputError(f"{values.size} dropper lengths for {len(names)} droppers: give one each")
+        raise InputError(
+            f"{counted(values.size, 'dropper length')} for {counted(len(names), 'dropper')}: give one each"
+        )
     heights = catenary.messenger_support_heights
     room = np.interp(catenary.dropper_positions, catenary.support_positions, heights)
     room -= catenary.design_heights

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.system import System, assemble
-from catenary_fe.system import Catenary, InputError, SolverError
+from catenary_fe.system import Catenary, InputError, SolverError, counted
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -119,8 +119,8 @@ def _lowest(system: LinearSystem, count: int) -> tuple[Floats, Floats]:
     dimension = system.size
     if dimension >= _DENSE_LARGEST and count > _LANCZOS_SHARE * dimension:
         raise InputError(
-            f"modes: {count} modes of a mesh with {dimension} coordinates: at most a third of them can be"
-            " found; ask for less"
+            f"modes: {counted(count, 'mode')} of a mesh with {dimension} coordinates: at most a third of them"
+            " can be found; ask for less"
         )
     if count > _DENSE_SHARE * dimension and dimension < _DENSE_LARGEST:
         whole = system.stiffness.toarray(), system.mass.toarray()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import socket
+import stat
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from errno import EACCES, EAGAIN, EDEADLK, EDQUOT, EFBIG, EISDIR, ENOSPC
@@ -65,6 +67,23 @@ def settle(file: Path) -> None:
     """Bring a file from memory to the disk: after a power cut, too, its name means that it is whole."""
     with file.open("rb+") as opened:
         os.fsync(opened.fileno())
+
+
+def own_temporary_folder() -> str | None:
+    """A folder among the temporary files in which only this user writes, or None where none can be had.
+
+    Others may make what has its name before us: a folder that is not ours alone is not taken.
+    """
+    number = 0 if sys.platform == "win32" else os.getuid()  # there, temporary files are the user's own
+    try:
+        path = os.path.join(tempfile.gettempdir(), f"catenary_fe-{number}")
+        with suppress(FileExistsError):
+            os.mkdir(path, 0o700)
+        found = os.lstat(path)
+    except OSError:
+        return None
+    alone = sys.platform == "win32" or (found.st_uid == number and not found.st_mode & 0o022)
+    return path if alone and stat.S_ISDIR(found.st_mode) else None
 
 
 def cannot_be_written(path: str | Path, error: OSError) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.system import Catenary, InputError
+from catenary_fe.system import Catenary, InputError, counted
 from catenary_fe.system.arguments import number, on_the_wire
 from catenary_fe.system.frozen import changed_by_copy
 from catenary_fe.system.parameters import shorten
@@ -133,7 +133,8 @@ class Modes:
     def kind(self, mode: int) -> ModeKind:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
         if not isinstance(mode, Integral) or isinstance(mode, bool) or not 0 <= int(mode) < len(self):
-            raise InputError(f"mode {shorten(mode)}: {len(self)} modes were computed, numbered from 0")
+            computed = counted(len(self), "mode")
+            raise InputError(f"mode {shorten(mode)}: computed: {computed}, numbered from 0")
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)

@@ -3,7 +3,7 @@
 from catenary_fe.system import library
 from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.current_collection import PowerSystem, target_mean_force
-from catenary_fe.system.errors import CatenaryError, InputError, Interrupted, SolverError
+from catenary_fe.system.errors import CatenaryError, InputError, Interrupted, SolverError, counted
 from catenary_fe.system.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.system.pantograph import (
     AerodynamicForce,
@@ -40,6 +40,7 @@ __all__ = [
     "StitchWire",
     "Support",
     "Wire",
+    "counted",
     "layout_schema",
     "layout_warnings",
     "library",

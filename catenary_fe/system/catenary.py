@@ -13,7 +13,7 @@ from pydantic import model_validator
 
 from catenary_fe.system.arguments import checked, number, numbers, whole
 from catenary_fe.system.catenary_rules import catenary_faults
-from catenary_fe.system.errors import InputError
+from catenary_fe.system.errors import InputError, counted
 from catenary_fe.system.parameters import (
     GRAVITY,
     NonEmpty,
@@ -95,8 +95,8 @@ class Catenary(Parameters):
     def _counts(self) -> Self:
         if len(self.supports) != len(self.spans) + 1:
             raise ValueError(
-                f"{len(self.supports)} supports for {len(self.spans)} spans: there must be one more support"
-                " than spans"
+                f"{counted(len(self.supports), 'support')} for {counted(len(self.spans), 'span')}: there must"
+                " be one more support than spans"
             )
         refuse(catenary_faults(self))
         return self

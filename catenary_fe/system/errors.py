@@ -6,6 +6,11 @@ from signal import SIGINT
 from typing import Any
 
 
+def counted(number: int, what: str) -> str:
+    """``1 span``, ``2 spans``: how messages count."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
 class CatenaryError(Exception):
     """Root of all errors of catenary_fe. Its text is made for an engineer, not for a programmer."""
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import os
-import tomllib
+import re
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from catenary_fe.system import library
 from catenary_fe.system.arguments import checked
 from catenary_fe.system.catenary import Catenary, RayleighDamping
 from catenary_fe.system.errors import InputError
-from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.pantograph import AnyPantograph, ElasticPantograph, Pantograph
 from catenary_fe.system.parameters import (
     NonEmpty,
     Number,
@@ -26,9 +26,9 @@ from catenary_fe.system.parameters import (
 )
 from catenary_fe.system.span import Span
 from catenary_fe.system.support import SteadyArm, Support
+from catenary_fe.system.toml import read_toml
 from catenary_fe.system.wire import Dropper, StitchWire, Wire
 
-LARGEST_FILE = 4 * 2**20  # [bytes] a thousand mistuned spans stay below 1 MiB
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
 MOST_DROPPERS = 200_000  # of a line, likewise
 
@@ -275,14 +275,40 @@ def load_catenary(path: str | Path) -> Catenary:
     Raises InputError, one line for each fault that the file has.
     """
     path = Path(path)
-    record = _read_toml(path, "layout")
+    record = read_toml(path, "layout")
     try:
         return LayoutFile.model_validate(record).catenary()
     except ValidationError as error:
-        lines = [*problem_lines(error, LayoutFile), *_further_faults(record, error)]
+        lines = [*fault_lines(error, record), *_further_faults(record, error)]
     except InputError as error:
         lines = list(error.problems)
     raise InputError(*(f"{path}: {line}" for line in lines)) from None
+
+
+def fault_lines(error: ValidationError, record: dict[str, Any]) -> list[str]:
+    """One line for each fault of a layout as it is written, by the numbers of spans and supports on site."""
+    names = _numbers_on_site(record)
+    found = [(line, re.match(r"(?:supports|span) \d+", line)) for line in problem_lines(error, LayoutFile)]
+    return [names.get(m[0], m[0]) + line[m.end() :] if m else line for line, m in found]
+
+
+def _numbers_on_site(record: dict[str, Any]) -> dict[str, str]:
+    """Names of entries in lists: by the support, or by the first of the spans that they stand for."""
+    names, first = {}, 1
+    for n, entry in enumerate(_entries(record, "supports"), start=1):
+        at = entry.get("at")
+        names[f"supports {n}"] = f"supports: at = {at}" if type(at) is int else f"entry {n} of [[supports]]"
+    for n, entry in enumerate(_entries(record, "span"), start=1):
+        if first != n:
+            names[f"span {n}"] = f"span {first} (entry {n} of [[span]])"
+        count = entry.get("count", 1)
+        first += count if type(count) is int else 1
+    return names
+
+
+def _entries(record: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    entries = record.get(key)
+    return [e if isinstance(e, dict) else {} for e in entries] if isinstance(entries, list) else []
 
 
 def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str, ...]:
@@ -301,18 +327,22 @@ def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str
 
 def read_layout(path: str | Path) -> dict[str, Any]:
     """A layout file as it is written, not checked yet. Raises InputError if it is no TOML file."""
-    return _read_toml(Path(path), "layout")
+    return read_toml(Path(path), "layout")
 
 
 @checked
-def load_pantograph(name_or_path: str | Path) -> Pantograph:
+def load_pantograph(name_or_path: str | Path) -> AnyPantograph:
     """A pantograph from a TOML file, or from the library by its name.
+
+    A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph.
 
     Raises InputError, one line for each fault that the file has, or the near names of the library.
     """
     path = Path(name_or_path)
     if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
-        return _read(path, Pantograph, "pantograph")
+        record = read_toml(path, "pantograph")
+        elastic = "stages" not in record and not record.keys().isdisjoint({"force", "stiffness", "law"})
+        return _checked(record, ElasticPantograph, path) if elastic else _checked(record, Pantograph, path)
     return library.pantograph(str(name_or_path))
 
 
@@ -322,39 +352,12 @@ def layout_schema() -> dict[str, Any]:
 
 
 def pantograph_schema() -> dict[str, Any]:
-    """JSON Schema of a pantograph file."""
-    return Pantograph.model_json_schema()
+    """JSON Schema of a pantograph file, of masses or elastic."""
+    return TypeAdapter(AnyPantograph).json_schema() | {"title": "catenary_fe pantograph"}
 
 
-def _read(path: Path, model: type[_Model], kind: str) -> _Model:
+def _checked(record: dict[str, Any], model: type[_Model], path: Path) -> _Model:
     try:
-        return model.model_validate(_read_toml(path, kind))
+        return model.model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, model, where=str(path))) from None
-
-
-def _read_toml(path: Path, kind: str) -> dict[str, Any]:
-    content = _read_bytes(path, kind)
-    try:
-        return tomllib.loads(content.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: not a text in UTF-8 (byte {error.start}); save it as UTF-8") from None
-    except RecursionError:
-        raise InputError(f"{path}: not a TOML file: lists or tables too deep inside one another") from None
-    except ValueError as error:  # of TOML, and of whole numbers of thousands of digits
-        raise InputError(f"{path}: not a TOML file: {error}") from None
-
-
-def _read_bytes(path: Path, kind: str) -> bytes:
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)  # devices and pipes have no size, nor need they end
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise InputError(f"{str(path)!r}: no file can have this name; check it") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
-    return content

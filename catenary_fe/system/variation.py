@@ -12,8 +12,8 @@ from pydantic import BaseModel, ValidationError
 
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
-from catenary_fe.system.files import LayoutFile, load_pantograph, read_layout
-from catenary_fe.system.pantograph import Pantograph
+from catenary_fe.system.files import LayoutFile, fault_lines, load_pantograph, read_layout
+from catenary_fe.system.pantograph import AnyPantograph, ElasticPantograph, Pantograph
 from catenary_fe.system.parameters import problem_lines
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
@@ -45,12 +45,12 @@ class Variable:
         try:
             return LayoutFile.model_validate(record).catenary()
         except ValidationError as error:
-            raise InputError(*problem_lines(error, LayoutFile, where=said)) from None
+            raise InputError(*(f"{said}: {line}" for line in fault_lines(error, record))) from None
         except InputError as error:
             raise InputError(*(f"{said}: {line}" for line in error.problems)) from None
 
 
-def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> Pantograph:
+def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> AnyPantograph:
     """A pantograph of the library or a file with these values; keys of the layout are left out.
 
     Raises InputError for a place that does not exist and for values that break a rule.
@@ -66,46 +66,54 @@ def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> Pantograph:
         replace_at(record, place, value)
     said = ", ".join([name_or_path, *(f"{place} = {value!r}" for place, value in changes.items())])
     try:
-        return Pantograph.model_validate(record)
+        return type(pantograph).model_validate(record)
     except ValidationError as error:
-        raise InputError(*problem_lines(error, Pantograph, where=said)) from None
+        raise InputError(*problem_lines(error, type(pantograph), where=said)) from None
 
 
 def replace_at(record: dict[str, Any], place: str, value: Any) -> None:
     """Put a value at a place of nested tables and lists; a table's last key may be new.
 
-    Raises InputError for a place that does not exist.
+    Raises InputError for a place that does not exist, and for one that holds a table of several values.
     """
-    *steps, last = place.split(".")
+    steps = place.split(".")
     holders: list[Any] = [record]
-    for step in steps:
-        holders = [inner for holder in holders for inner in _inside(holder, step, place)]
+    for n, step in enumerate(steps[:-1]):
+        holders = [holder[key] for holder in holders for key in _keys(holder, step, place, steps[:n])]
     for holder in holders:
-        if isinstance(holder, dict):
-            holder[last] = value
-            continue
-        for i in _numbers(holder, last, place):
-            holder[i] = value
+        for key in _keys(holder, steps[-1], place, steps[:-1], new=True):
+            before = holder[key] if isinstance(holder, list) else holder.get(key)
+            if isinstance(before, dict):
+                raise InputError(
+                    f"{place}: there is a table of {', '.join(before)}; vary one of them, such as"
+                    f" {place}.{next(iter(before))}"
+                )
+            holder[key] = value
 
 
-def _inside(holder: Any, step: str, place: str) -> list[Any]:
+def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False) -> list[Any]:
+    """What a step of a place means inside a table or a list.
+
+    path : the steps before
+    new : whether a key that is not there may be made
+    """
     if isinstance(holder, dict):
-        if step not in holder:
+        if step not in holder and not new:
             near = difflib.get_close_matches(step, holder, n=1)
             hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(holder)}"
             raise InputError(f"{place}: no '{step}' to vary a value of; {hint}")
-        return [holder[step]]
-    return [holder[i] for i in _numbers(holder, step, place)]
-
-
-def _numbers(holder: Any, step: str, place: str) -> list[int]:
+        return [step]
+    before = ".".join(path)
     if not isinstance(holder, list):
-        raise InputError(f"{place}: there is a single value where '{step}' is looked for")
+        raise InputError(f"{place}: {before} is a single value, {holder!r}; vary {before} itself")
     if step == "*":
         return list(range(len(holder)))
     if not (step.isdigit() and 1 <= int(step) <= len(holder)):
+        missing = any(isinstance(member, dict) and step in member for member in holder)
+        hint = f"{before}.*{place.removeprefix(before)}" if missing else f"{before}.1"
         raise InputError(
-            f"{place}: '{step}' is not a number from 1 to {len(holder)}, nor * for all of a list's members"
+            f"{place}: '{step}' is not a number from 1 to {len(holder)}, nor * for all of a list's members;"
+            f" such as {hint}"
         )
     return [int(step) - 1]
 
@@ -114,7 +122,8 @@ def unit_of(place: str) -> str:
     """Unit of the value at a place, such as "N/m"; empty where it has none."""
     model: type[BaseModel] | None = LayoutFile
     if place.startswith(PANTOGRAPH):
-        model, place = Pantograph, place.removeprefix(PANTOGRAPH)
+        place = place.removeprefix(PANTOGRAPH)
+        model = Pantograph if place.split(".")[0] in Pantograph.model_fields else ElasticPantograph
     said = ""
     for step in place.split("."):
         if step == "*" or step.isdigit():

@@ -6,16 +6,25 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.views.style import distinct, finish, headroom, mark_supports, new_axes, note_failed
+from catenary_fe.views.style import (
+    Picture,
+    distinct,
+    finish,
+    headroom,
+    mark_supports,
+    new_axes,
+    note_failed,
+    styled,
+)
 
 Floats = NDArray[np.float64]
 
 
+@styled
 def plot_force_comparison(
     runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal"
 ) -> Axes:
@@ -23,7 +32,7 @@ def plot_force_comparison(
 
     Returns the axes of the forces; the differences are in the axes below it. Supports are the first run's.
     """
-    figure = Figure(figsize=(11.0, 6.4), layout="constrained")
+    figure = Picture(figsize=(11.0, 6.4), layout="constrained")
     force, difference = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     curves = [_force(run, filter) for run in runs]
     first_x, first = curves[0]
@@ -49,6 +58,7 @@ def plot_force_comparison(
     return chosen
 
 
+@styled
 def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Axes | None = None) -> Axes:
     """Largest uplift at each support of each run."""
     ax = new_axes(ax)

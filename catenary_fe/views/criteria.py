@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from catenary_fe.results import Criterion, labels
-from catenary_fe.views.style import finish, new_axes
+from catenary_fe.views.style import finish, new_axes, styled
 
 _COLOURS = {"passed": "#3a7d44", "missed": "#b3261e", "not judged": "#9a9a9a"}
 _LONGEST = 2.0  # times the limit: a longer bar would leave no room to compare the others
 
 
+@styled
 def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None = None) -> Axes:
     """One bar for each criterion: 100 % is the limit, a longer bar misses it.
 

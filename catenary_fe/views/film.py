@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from catenary_fe.results import Run
@@ -24,9 +23,11 @@ from catenary_fe.views.style import (
     SLACK,
     SUPPORT,
     WIRES,
+    Picture,
     finish,
     mark_supports,
     note_failed,
+    styled,
     wire_colour,
 )
 
@@ -36,6 +37,7 @@ _BASE = 0.3  # [m] of room below the lowest and above the highest thing drawn
 
 
 @checked
+@styled
 def film(
     run: Run,
     path: str | Path,
@@ -88,7 +90,7 @@ class _View:
             raise InputError(f"no pantograph was ever inside spans {list(spans)}")
         self.begin, self.stop = float(run.time[seen][0]), float(run.time[seen][-1])
         self.magnified, self._run = magnified, run
-        self.figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
+        self.figure = Picture(figsize=_SIZE, dpi=_DPI, layout="constrained")
         self._canvas: Any = FigureCanvasAgg(self.figure)
         self._wires: Axes
         self._wires, self._force = self.figure.subplots(2, 1, height_ratios=(3, 2), sharex=True)

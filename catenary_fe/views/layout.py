@@ -13,12 +13,13 @@ from catenary_fe.system import Catenary
 from catenary_fe.system.arguments import checked
 from catenary_fe.views.lines import Line, draw_lines, hanging_lines, sketched_lines, upper_wires
 from catenary_fe.views.stretch import Stretch, draw_line, evaluated_pair, mark_evaluated
-from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row
+from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row, styled
 
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
 
 
 @checked
+@styled
 def plot_layout(
     catenary: Catenary,
     shape: Shape | None = None,

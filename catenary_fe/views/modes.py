@@ -6,11 +6,22 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
+from catenary_fe.system import counted
 from catenary_fe.system.arguments import checked
-from catenary_fe.views.style import CONTACT, DROPPER, MESSENGER, distinct, finish, mark_supports, new_axes
+from catenary_fe.views.style import (
+    CONTACT,
+    DROPPER,
+    MESSENGER,
+    distinct,
+    finish,
+    mark_supports,
+    new_axes,
+    styled,
+)
 
 
 @checked
+@styled
 def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     """Both wires in one eigenform (mode numbered from 0), each about its own line, droppers between them.
 
@@ -52,6 +63,7 @@ def _drawn(wire: WireShapes, mode: int, sideways: bool) -> np.ndarray:
 
 
 @checked
+@styled
 def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
     """How many modes lie below a frequency, by what they are: clusters are steps."""
     ax = new_axes(ax, (10.0, 3.6))
@@ -63,5 +75,5 @@ def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
         label = f"{IN_WORDS.get(name, name)}: {of_kind.sum()}"
         ax.plot(modes.frequencies[of_kind], number[of_kind], ".", color=colour, markersize=5, label=label)
     ax.legend(fontsize=8, loc="upper left")
-    title = f"{modes.catenary.name}: {len(modes)} modes up to {modes.frequencies[-1]:.1f} Hz"
+    title = f"{modes.catenary.name}: {counted(len(modes), 'mode')} up to {modes.frequencies[-1]:.1f} Hz"
     return finish(ax, "frequency (Hz)", "number of modes below it", title)

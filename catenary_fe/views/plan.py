@@ -20,6 +20,7 @@ from catenary_fe.views.style import (
     label_row,
     mark_supports,
     rotation_that_fits,
+    styled,
 )
 
 _CURVE = "#7b4fa3"
@@ -27,6 +28,7 @@ _HEAD = "#dfe7ec"
 
 
 @checked
+@styled
 def plot_plan(
     shape: Shape, *, spans: Sequence[int] | None = None, head_width: float = 1.2, ax: Axes | None = None
 ) -> Axes:

@@ -25,6 +25,7 @@ from catenary_fe.views.style import (
     note_failed,
     runs,
     sequence,
+    styled,
 )
 
 Floats = NDArray[np.float64]
@@ -32,6 +33,7 @@ _NAMED = 12  # supports that a legend has room for
 
 
 @checked
+@styled
 def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | None = None) -> Axes:
     """Contact force along the line, filtered and unfiltered, with mean and 3σ of the evaluated spans."""
     ax = new_axes(ax, (11.0, 4.4))
@@ -83,6 +85,7 @@ def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: st
 
 
 @checked
+@styled
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
     """Uplift of the contact wire at the supports against time, those of the evaluated spans in colour.
 
@@ -125,6 +128,7 @@ def _uplift_bars(ax: Axes, largest: dict[int, float], colours: dict[int, str]) -
 
 
 @checked
+@styled
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     """Static, largest and smallest force of each dropper; those that went slack are marked."""
     ax = new_axes(ax)
@@ -149,6 +153,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
 
 
 @checked
+@styled
 def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:
     """Work on the whole system, what its dampers took, what it has stored, and what is missing of that.
 

@@ -14,7 +14,7 @@ from catenary_fe.results import Run
 from catenary_fe.system import InputError
 from catenary_fe.system.arguments import checked, one_of, span_numbers
 from catenary_fe.views.space_time import plot_space_time
-from catenary_fe.views.style import note_failed
+from catenary_fe.views.style import note_failed, styled
 
 Floats = NDArray[np.float64]
 Quantity = Literal["velocity", "deflection"]
@@ -23,6 +23,7 @@ _SHOWN = 99.8  # [%] of the values lie inside the colour scale: a peak at the he
 
 
 @checked
+@styled
 def plot_run_waves(
     run: Run,
     *,

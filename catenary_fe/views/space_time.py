@@ -9,12 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from catenary_fe.views.style import CONTACT, new_axes
+from catenary_fe.views.style import CONTACT, new_axes, styled
 
 Floats = NDArray[np.float64]
 _LINES = ("-", "--", ":", "-.")
 
 
+@styled
 def plot_space_time(
     x: Floats,
     t: Floats,
@@ -55,6 +56,7 @@ def plot_space_time(
     return ax
 
 
+@styled
 def plot_surface(x: Floats, t: Floats, deflection: Floats, *, title: str = "", ax: Any) -> Any:
     """The deflection as a surface over place and time, on axes with ``projection="3d"``.
 
@@ -73,6 +75,7 @@ def plot_surface(x: Floats, t: Floats, deflection: Floats, *, title: str = "", a
     return ax
 
 
+@styled
 def plot_family(
     x: Floats,
     curves: Mapping[str, Floats],

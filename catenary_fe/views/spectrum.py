@@ -8,10 +8,11 @@ from matplotlib.axes import Axes
 from catenary_fe.results import Run, spectrum
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.system.arguments import checked, number
-from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed
+from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed, styled
 
 
 @checked
+@styled
 def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | None = None) -> Axes:
     """Amplitudes of the unfiltered contact force while the pantographs are in the evaluated spans.
 

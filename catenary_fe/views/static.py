@@ -23,12 +23,14 @@ from catenary_fe.views.style import (
     mark_supports,
     new_axes,
     new_panels,
+    styled,
 )
 
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
 @checked
+@styled
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions below it.
 

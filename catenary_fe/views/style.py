@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
-from matplotlib import colormaps
+from matplotlib import colormaps, style
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
+
+_Arguments = ParamSpec("_Arguments")
+_Drawn = TypeVar("_Drawn")
 
 CONTACT = "#c44e1c"  # contact wire
 MESSENGER = "#1f5a85"  # messenger wire
@@ -39,11 +46,52 @@ def distinct(count: int) -> list[str]:
     return list(_MANY[:count]) if count <= len(_MANY) else sequence(count)
 
 
+_inside: ContextVar[bool] = ContextVar("inside our own style", default=False)
+
+
+@contextmanager
+def own_style(settings: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Let matplotlib draw by its defaults, whatever the user's matplotlibrc asks for; after it, as before.
+
+    settings : of matplotlib's that differ; inside another own style, they alone are changed
+    """
+    base: list[Any] = [] if _inside.get() else ["default", {"svg.hashsalt": "catenary_fe"}]
+    token = _inside.set(True)
+    try:
+        with style.context([*base, dict(settings or {})]):
+            yield
+    finally:
+        _inside.reset(token)
+
+
+def styled(draw: Callable[_Arguments, _Drawn]) -> Callable[_Arguments, _Drawn]:
+    """Draw in our own style; in texts a dollar sign is one."""
+
+    @wraps(draw)
+    def drawn(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Drawn:
+        with own_style({"text.parse_math": False}):
+            return draw(*args, **kwargs)
+
+    return drawn
+
+
+class Picture(Figure):
+    """A figure that is drawn in our own style, also when the user saves it: matplotlib makes ticks late."""
+
+    def draw(self, renderer: Any) -> None:
+        with own_style():
+            super().draw(renderer)
+
+    def savefig(self, *args: Any, **kwargs: Any) -> None:
+        with own_style():
+            super().savefig(*args, **kwargs)
+
+
 def new_axes(ax: Axes | None, size: tuple[float, float] = (10.0, 4.0)) -> Axes:
     """The given axes, or those of a new figure of this size in inches; the screen is never used."""
     if ax is not None:
         return ax
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Picture(figsize=size, layout="constrained")
     axes: Axes = figure.subplots()
     return axes
 
@@ -54,7 +102,7 @@ def new_panels(size: tuple[float, float], heights: Sequence[float]) -> list[Axes
     size : [in] of the figure
     heights : of the axes, relative to each other
     """
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Picture(figsize=size, layout="constrained")
     return list(figure.subplots(len(heights), 1, height_ratios=list(heights)))
 
 

@@ -11,12 +11,13 @@ from matplotlib.axes import Axes
 from catenary_fe.system import target_mean_force
 from catenary_fe.system.current_collection import DEVIATION_SHARE
 from catenary_fe.system.variation import unit_of
-from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed
+from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed, styled
 
 Rows = Sequence[Mapping[str, Any]]
 _CRITERION: dict[str, Any] = {"color": "#222222", "linewidth": 1.1}
 
 
+@styled
 def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Mean force, mean ± 3σ and actual extremes against ``x``, one colour for each combination of ``by``.
 
@@ -42,6 +43,7 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
     return _finished(ax, rows, x, "contact force, 0 to 20 Hz (N)", "Contact force")
 
 
+@styled
 def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Standard deviation against ``x`` with the largest one that is allowed, a share of the mean force."""
     ax = new_axes(ax, (10.0, 4.6))
@@ -61,6 +63,7 @@ def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes
     return _finished(ax, rows, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
 
 
+@styled
 def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Largest uplift at a support of the evaluated spans against ``x``."""
     ax = new_axes(ax, (10.0, 4.2))

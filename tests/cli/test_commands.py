@@ -180,7 +180,7 @@ def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path, monkeypatch
         ),
         (["run", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "--element-m", "1e-6"], 3, "more than 200,000"),
         (["static", "LAYOUT", "--force", "0"], 3, "force = 0 N: must be above 0"),
-        (["static", "LAYOUT", "--spans", "five"], 2, "not a list of span numbers"),
+        (["static", "LAYOUT", "--spans", "five"], 2, "not a list of spans or rising ranges"),
         (["static", "LAYOUT", "--spans", "9"], 3, "span 9: the line has spans 1 to 4"),
         (["form", "LAYOUT", "--spans", "2"], 2, "--spans chooses the spans that are drawn: give -o DIR"),
         (["info", "LAYOUT", "--spans", "4,5", "-o", "out"], 3, "the line has spans 1 to 4"),

@@ -147,6 +147,10 @@ def test_folders_that_hold_no_run(capsys, tmp_path, command):
     assert (code, out) == (3, "")
     assert "holds no run.nc; give a folder that 'catenary-fe run ... -o DIR' wrote" in err
     assert len(err.splitlines()) == 1
+    (tmp_path / "partial").mkdir()
+    (tmp_path / "partial" / "run.nc").touch()
+    _, _, err = call(capsys, *command, tmp_path)
+    assert f"one that was stopped is in {tmp_path / 'partial'}: give that folder" in err
 
 
 def test_film(capsys, folder, tmp_path):

@@ -41,4 +41,4 @@ def test_modes_beyond_the_mesh(capsys, reference_layout, tmp_path):
     code, out, _ = call(capsys, "modes", small, "--count", 300, "--json")
     (warning,) = json.loads(out)["warnings"]
     assert code == 0
-    assert "Hz, where waves are shorter than two elements" in warning
+    assert "Hz waves are shorter than two elements: " in warning

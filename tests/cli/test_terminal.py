@@ -7,9 +7,11 @@ import select
 import subprocess
 import sys
 
+import click
 import pytest
 
 from catenary_fe.cli import main
+from catenary_fe.cli.terminal import _span_numbers
 
 
 def at_a_terminal(arguments, **environment):
@@ -90,3 +92,21 @@ def test_every_command_has_an_example_and_the_group_lists_them_in_order(capsys):
     said = capsys.readouterr().out
     assert said.index("  info ") < said.index("  run ") < said.index("  report ") < said.index("  validate ")
     assert "..." not in said.split("Commands:")[1]
+
+
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [("5", [5]), ("5,6", [5, 6]), ("5-8", [5, 6, 7, 8]), (" 7 - 9, 3 ,8", [7, 8, 9, 3]), (None, None)],
+)
+def test_spans_are_numbers_and_ranges(text, numbers):
+    assert spans_option_value(text) == numbers
+
+
+@pytest.mark.parametrize("text", ["", "5,", "7-5", "a", "1-1000000000", "5.0"])
+def test_what_is_no_list_of_spans(text):
+    with pytest.raises(click.BadParameter, match="not a list of spans or rising ranges such as"):
+        spans_option_value(text)
+
+
+def spans_option_value(text):
+    return _span_numbers(click.Context(click.Command("x")), click.Option(["--spans"]), text)

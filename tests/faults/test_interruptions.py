@@ -106,9 +106,7 @@ def test_a_lost_case_ends_a_sweep_with_4(call, layout, tmp_path, monkeypatch):
     code, _, err = call("sweep", layout, *SWEEP, "--speed-kmh", "200", "220", "-o", tmp_path)
     assert code == 4
     assert "failed: speed_kmh = 220.0" in err
-    assert (
-        f"1 of 2 cases were lost with their processes; the others are kept in {tmp_path}: start again" in err
-    )
+    assert f"lost with their processes: 1 of 2 cases; the others are kept in {tmp_path}: start again" in err
     assert len(list(tmp_path.glob("cases/*.json"))) == 1
 
 

@@ -247,7 +247,7 @@ def test_a_table_of_modes():
 def test_modes_are_numbered_from_0(number):
     mode = modes([sine(1)] * 3)
     assert mode.kind(0) == mode.kind(2)
-    with pytest.raises(cf.InputError, match=f"mode {number}: 3 modes were computed, numbered from 0"):
+    with pytest.raises(cf.InputError, match=f"mode {number}: computed: 3 modes, numbered from 0"):
         mode.kind(number)
 
 

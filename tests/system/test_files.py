@@ -1,13 +1,16 @@
 """Layout and pantograph files: what is written is what is built; what is wrong is said at once."""
 
 import json
+import tomllib
+from pathlib import Path
 
 import jsonschema
 import pytest
 
 import catenary_fe as cf
 from catenary_fe.system import layout_schema, pantograph_schema
-from catenary_fe.system.files import LARGEST_FILE
+from catenary_fe.system.toml import LARGEST_FILE
+from catenary_fe.system.variation import varied_pantograph
 
 
 def faults(path):
@@ -169,8 +172,6 @@ def test_pantograph_file(tmp_path):
 
 
 def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
-    import tomllib
-
     schema = layout_schema()
     jsonschema.Draft202012Validator.check_schema(schema)
     for path in sorted(reference_layout.parent.glob("*.toml")):
@@ -184,3 +185,74 @@ def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
     text = json.dumps(pantograph_schema())
     assert "EN 50367 AC" in text
     assert "[N] constant force on the lowest mass" in text
+
+
+CASES = Path(__file__).parents[1] / "cases"
+
+
+def test_a_byte_order_mark_is_read(tmp_path):
+    assert cf.load_catenary(CASES / "windows_bom.toml").name == "plain line"
+    path = tmp_path / "pantograph.toml"
+    path.write_text("\ufeffuplift_force = 60.0\nstages = [{ mass = 7.0, stiffness = 7000.0 }]\n", "utf-8")
+    assert cf.load_pantograph(path).uplift_force == 60.0
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("height = 5,5", "line 2: 5,5 is a number with a comma: write a point before decimals (5.5), and"),
+        ("steady_arm = { mass = 0,8, stiffness = 1 }", "line 2: 0,8 is a number with a comma"),
+        ("tension = 15 000", "line 2: 15 000 is a number with blanks: write 15000"),
+        ("library = “AC-120”", "line 2, column 11: typographic quote “ (U+201C): write \" in its place"),
+        ("library = ‘AC-120’ # it's", "line 2, column 11: typographic quote ‘ (U+2018)"),
+        ("tension\u00a0= 15e3", "line 2, column 8: no-break or other special blank (U+00A0)"),
+        ("curve_radius = −300.0", "line 2, column 16: dash − (U+2212): write an ordinary hyphen"),
+        ("name = 'a – “b”' c", "not a TOML file: "),  # inside a text they are right
+    ],
+)  # fmt: skip
+def test_usual_slips_are_named_with_their_line(tmp_path, line, said):
+    path = tmp_path / "a.toml"
+    path.write_text(f'name = "“Łódź” – 5,5"\n{line}\n', "utf-8")
+    (found,) = faults(path)
+    assert found.startswith(said)
+
+
+def test_other_encodings_are_named(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_bytes('a = 1\nname = "Łódź"\n'.encode("cp1250"))
+    assert faults(path) == ["not a text in UTF-8 (line 2, byte 14); save it as UTF-8"]
+    path.write_text("name = 'x'", "utf-16")
+    assert faults(path)[0].startswith("a text in UTF-16")
+
+
+def test_spans_and_supports_are_called_by_their_numbers_on_site(edited):
+    path = edited(
+        ("[[span]]", "[[span]]\nlength = 60.0\ndroppers = [30.0]\ncount = 4\n[[span]]"),
+        ("[[span]]", '[[supports]]\nat = 7\nsystem_height = "1.2"\n[[supports]]\nstagger = 0.2\n[[span]]'),
+        ("count = 10", "count = 0"),
+    )
+    assert [line.split(" = 0")[0].split(" is ")[0] for line in faults(path)] == [
+        "supports: at = 7: system_height = '1.2': must be a number; it",
+        "entry 2 of [[supports]]: at",
+        "span 5 (entry 2 of [[span]]): count",
+    ]
+
+
+def test_elastic_pantographs_in_files(tmp_path):
+    path, law = tmp_path / "elastic.toml", "law = [[-0.1, 150.0], [0.2, 60.0]]\n"
+    path.write_text("name = 'soft'\nforce = 120.0\nstiffness = 400.0\n")
+    assert cf.load_pantograph(path) == cf.ElasticPantograph(name="soft", force=120.0, stiffness=400.0)
+    path.write_text(law)
+    assert cf.load_pantograph(path).contact_force(0.05) == pytest.approx(105.0)
+    jsonschema.validate(tomllib.loads(law), pantograph_schema())
+    assert varied_pantograph(str(path), {"pantograph.law.1.2": 90.0}).contact_force(-1.0) == 90.0
+    for text, said in (
+        ("force = 120.0\n" + law, "force and law: give exactly one"),
+        (law + "uplift_force = 60.0\n", "unknown key uplift_force; known keys: force, law"),
+        ("law = [[0.2, 60.0], [-0.1, 150.0]]\n", "law: after 60 N at 0.2 m comes 150 N"),
+        (law + "stages = [{ mass = 7.0, stiffness = 7e3 }]\n", "unknown key law"),
+    ):
+        path.write_text(text)
+        with pytest.raises(cf.InputError) as caught:
+            cf.load_pantograph(path)
+        assert any(line.startswith(f"{path}: {said}") for line in caught.value.problems)

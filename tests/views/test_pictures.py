@@ -1,15 +1,21 @@
 """Pictures: drawn from data, labelled with units, without a screen."""
 
+import pkgutil
+from importlib import import_module
+from io import BytesIO
+from types import ModuleType
+
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib import rc_context, rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import catenary_fe as cf
 from catenary_fe import views
 from catenary_fe.results import Criterion
-from catenary_fe.views.style import EVALUATED, WIRES, distinct, sequence
+from catenary_fe.views.style import EVALUATED, WIRES, distinct, sequence, styled
 
 
 @pytest.fixture(scope="module")
@@ -248,3 +254,38 @@ def test_spans_that_the_line_does_not_have(short_shape):
             draw(short_shape, spans=[4, 5])
     with pytest.raises(cf.InputError, match="the line has spans 1 to 4"):
         views.plot_layout(short_shape.catenary, spans=[0])
+
+
+ODD = {
+    "text.usetex": True, "font.size": 30, "figure.dpi": 40, "savefig.dpi": 33, "savefig.bbox": "tight",
+    "axes.facecolor": "black", "lines.linestyle": ":", "axes.unicode_minus": False, "xtick.direction": "in",
+}  # fmt: skip
+
+
+def test_the_users_settings_of_matplotlib_do_not_matter(short):
+    """Nor is LaTeX needed, which is not there; a dollar sign in a name is one."""
+    named = short.replace(name="100 % of $x_{ \\frac")
+    pictures = []
+    for settings in ({}, ODD):
+        with rc_context(settings):
+            before = dict(rcParams)
+            pictures.append(BytesIO())
+            views.plot_layout(named).figure.savefig(pictures[-1])
+            assert dict(rcParams) == before
+    assert pictures[0].getvalue() == pictures[1].getvalue()
+
+
+def wrappers(function):
+    """The code of all functions that a decorated one is made of."""
+    while function:
+        yield function.__code__
+        function = getattr(function, "__wrapped__", None)
+
+
+def test_every_picture_is_drawn_in_our_own_style():
+    ours = styled(lambda: None).__code__
+    names = [name for _, name, _ in pkgutil.walk_packages(views.__path__, "catenary_fe.views.")]
+    for module in map(import_module, names):
+        for name, drawn in vars(module).items():
+            if name.startswith("plot_") or name in ("film", "report_page", "comparison_page"):
+                assert isinstance(drawn, ModuleType) or ours in wrappers(drawn), (module, name)

@@ -10,6 +10,7 @@ from catenary_fe.results.signal import FilterKind
 from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 from catenary_fe.views.report.html import svg_address, template
 from catenary_fe.views.report.tables import Table
+from catenary_fe.views.style import styled
 
 _DIGITS = {
     "contact_loss_percent": 2,
@@ -21,6 +22,7 @@ _DIGITS = {
 }
 
 
+@styled
 def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal") -> str:
     """HTML of a comparison, complete in itself. Raises InputError for fewer than two runs."""
     columns = key_figures(runs, labels, filter)

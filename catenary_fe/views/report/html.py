@@ -8,8 +8,9 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from matplotlib import rc_context
 from matplotlib.axes import Axes
+
+from catenary_fe.views.style import own_style
 
 if TYPE_CHECKING:
     from jinja2 import Environment, Template
@@ -24,7 +25,7 @@ def svg_address(ax: Axes, dpi: int = 100) -> str:
     """
     figure, file = ax.get_figure(root=True), io.BytesIO()
     assert figure is not None
-    with rc_context({"svg.hashsalt": "catenary_fe", "path.simplify_threshold": 0.3}):
+    with own_style({"path.simplify_threshold": 0.3}):
         figure.savefig(file, format="svg", dpi=dpi, metadata={"Date": None})
     return "data:image/svg+xml;base64," + base64.b64encode(file.getvalue()).decode("ascii")
 

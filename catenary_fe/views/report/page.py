@@ -14,9 +14,10 @@ from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables
 from catenary_fe.views.report.html import svg_address, template
 from catenary_fe.views.spectrum import plot_force_spectrum
-from catenary_fe.views.style import new_axes
+from catenary_fe.views.style import new_axes, styled
 
 
+@styled
 def report_page(
     run: Run,
     shape: Shape,

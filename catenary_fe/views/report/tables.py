@@ -13,7 +13,7 @@ from catenary_fe.equilibrium import Shape
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing, labels
 from catenary_fe.results.csv_files import cell, common_name, decimals_of
 from catenary_fe.results.signal import CUT_OFF, FilterKind
-from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire
+from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire, counted
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
         rows.append(("stagger", f"{_range(catenary.staggers)} m"))
     radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
     if radii:
-        rows.append(("curve radius", f"{_range(radii)} m in {len(radii)} spans"))
+        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(radii), 'span')}"))
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
