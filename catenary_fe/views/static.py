@@ -114,6 +114,7 @@ def _title(part: Stretch, what: str) -> str:
     return f"{part.catenary.name}: {what}{where}"
 
 
+@styled
 def plot_elasticity(elasticity: Elasticity, *, ax: Axes | None = None) -> Axes:
     """Elasticity along the line with its extremes; spans that were not computed leave a gap."""
     ax = new_axes(ax)

@@ -115,6 +115,10 @@ PANTOGRAPH: dict[str, Any] = {
     "contact_damping": 5.0, "head.width": 1.0, "head.spring_distance": 0.6, "head.roll_inertia": 2.0,
     "head.strips": 1, "head.strip_distance": 0.4,
 }  # fmt: skip
+ELASTIC: dict[str, Any] = {
+    "name": "another", "source": "elsewhere", "force": 130.0, "stiffness": 60.0,
+    "law": [[0.0, 120.0], [0.2, 80.0]],
+}  # fmt: skip
 
 
 def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Iterator[str]:
@@ -130,7 +134,9 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
     yield from inside or [place]
 
 
-@pytest.mark.parametrize(("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH)])
+@pytest.mark.parametrize(
+    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
+)
 def test_a_value_is_known_for_every_key(schema, known):
     assert sorted(set(keys(schema, schema))) == sorted(known)
 
@@ -273,6 +279,18 @@ def test_a_key_of_a_pantograph_acts(place):
         assert str(_pantograph_table(after.name, after)) != str(_pantograph_table(before.name, before))
     else:
         assert known_of(after) != known_of(before)
+
+
+@pytest.mark.parametrize("place", ELASTIC)
+def test_a_key_of_an_elastic_pantograph_acts(place):
+    linear = {"force": 120.0, "stiffness": 50.0}
+    before = cf.ElasticPantograph(**linear)
+    after = cf.ElasticPantograph.model_validate(({} if place == "law" else linear) | {place: ELASTIC[place]})
+    if place in ("name", "source"):
+        assert str(_pantograph_table(after.name, after)) != str(_pantograph_table(before.name, before))
+    else:
+        forces = [[p.contact_force(z) for z in (-0.1, 0.1, 0.3)] for p in (before, after)]
+        assert forces[0] != forces[1]
 
 
 INERT = {  # values that change nothing on a line, and what is said
