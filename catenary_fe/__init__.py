@@ -6,8 +6,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis import StaticState, elasticity, modal_run, simulate, solve_modes, solve_statics
+    from catenary_fe.analysis import modal_run, simulate, solve_modes
     from catenary_fe.equilibrium import Shape, find_form, find_heights
+    from catenary_fe.equilibrium.statics import StaticState, elasticity, solve_statics
     from catenary_fe.fe import MeshSettings, TimeSettings
     from catenary_fe.fe.wire_problem import (
         SlidingPantograph,
@@ -54,8 +55,9 @@ if TYPE_CHECKING:
 
 # loaded on first use: importing the package stays quick
 _ROOMS = {
-    "analysis": ("StaticState", "elasticity", "modal_run", "simulate", "solve_modes", "solve_statics"),
+    "analysis": ("modal_run", "simulate", "solve_modes"),
     "equilibrium": ("Shape", "find_form", "find_heights"),
+    "equilibrium.statics": ("StaticState", "elasticity", "solve_statics"),
     "fe": ("MeshSettings", "TimeSettings"),
     "fe.wire_problem": ("SlidingPantograph", "WireMotion", "WireProblem", "even_nodes", "graded_nodes"),
     "fe.wire_run": ("run_wire",),

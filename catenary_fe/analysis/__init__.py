@@ -4,7 +4,7 @@ from catenary_fe.analysis.modal_run import modal_run
 from catenary_fe.analysis.modes import solve_modes
 from catenary_fe.analysis.repeat import Repetition, repeat
 from catenary_fe.analysis.simulate import simulate
-from catenary_fe.analysis.statics import StaticState, elasticity, solve_statics
+from catenary_fe.equilibrium.statics import StaticState, elasticity, solve_statics
 
 __all__ = [
     "Repetition",

@@ -129,8 +129,7 @@ def simulate(
     force = MeanForce(pantographs, speed)
     if force.sought and COMPILED and not (keeper and keeper.kept):
         force, progress = _aimed(shape, case, time, progress)
-    run = _until_mean_force(case, time, force, set_up, label, progress, keeper)
-    return _told(run, len(warnings))
+    return _told(_until_mean_force(case, time, force, set_up, label, progress, keeper), len(warnings))
 
 
 def _told(run: Run, known: int) -> Run:

@@ -43,7 +43,7 @@ def evaluated(
 
 def with_elasticity(run: Run, shape: Shape, quiet: bool) -> Run:
     """The run with the elasticity of its evaluated spans."""
-    from catenary_fe.analysis import elasticity
+    from catenary_fe.equilibrium.statics import elasticity
 
     with progress_bar("elasticity", not quiet) as progress:
         return run.with_elasticity(elasticity(shape, progress=progress))

@@ -211,8 +211,8 @@ def static(
     quiet: bool,
 ) -> None:
     """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
-    from catenary_fe.analysis import elasticity
     from catenary_fe.equilibrium import find_form
+    from catenary_fe.equilibrium.statics import elasticity
 
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:

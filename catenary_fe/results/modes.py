@@ -133,8 +133,7 @@ class Modes:
     def kind(self, mode: int) -> ModeKind:
         """What a mode (from 0) looks like. Raises InputError for one that was not computed."""
         if not isinstance(mode, Integral) or isinstance(mode, bool) or not 0 <= int(mode) < len(self):
-            computed = counted(len(self), "mode")
-            raise InputError(f"mode {shorten(mode)}: computed: {computed}, numbered from 0")
+            raise InputError(f"mode {shorten(mode)}: computed: {counted(len(self), 'mode')}, numbered from 0")
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from catenary_fe.system.catenary import Catenary
 from catenary_fe.system.errors import InputError
 from catenary_fe.system.files import LayoutFile, fault_lines, load_pantograph, read_layout
-from catenary_fe.system.pantograph import AnyPantograph, ElasticPantograph, Pantograph
+from catenary_fe.system.pantograph import AnyPantograph
 from catenary_fe.system.parameters import problem_lines
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
@@ -120,10 +120,13 @@ def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False
 
 def unit_of(place: str) -> str:
     """Unit of the value at a place, such as "N/m"; empty where it has none."""
-    model: type[BaseModel] | None = LayoutFile
+    models: list[type[BaseModel]] = [LayoutFile]
     if place.startswith(PANTOGRAPH):
-        place = place.removeprefix(PANTOGRAPH)
-        model = Pantograph if place.split(".")[0] in Pantograph.model_fields else ElasticPantograph
+        models, place = list(get_args(AnyPantograph)), place.removeprefix(PANTOGRAPH)
+    return next((unit for model in models if (unit := _unit_in(model, place))), "")
+
+
+def _unit_in(model: type[BaseModel] | None, place: str) -> str:
     said = ""
     for step in place.split("."):
         if step == "*" or step.isdigit():
