@@ -25,7 +25,6 @@ Floats = NDArray[np.float64]
 
 
 @styled
-@styled
 def plot_force_comparison(
     runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal"
 ) -> Axes:
@@ -59,7 +58,6 @@ def plot_force_comparison(
     return chosen
 
 
-@styled
 @styled
 def plot_uplift_comparison(runs: Sequence[Run], labels: Sequence[str], *, ax: Axes | None = None) -> Axes:
     """Largest uplift at each support of each run."""

@@ -14,7 +14,6 @@ _LONGEST = 2.0  # times the limit: a longer bar would leave no room to compare t
 
 
 @styled
-@styled
 def plot_criteria(rows: Sequence[Criterion], *, title: str = "", ax: Axes | None = None) -> Axes:
     """One bar for each criterion: 100 % is the limit, a longer bar misses it.
 

@@ -36,7 +36,6 @@ _SIZE, _DPI = (10.0, 5.4), 96  # [in], dots per inch: even numbers of pixels, wh
 _BASE = 0.3  # [m] of room below the lowest and above the highest thing drawn
 
 
-@styled
 @checked
 @styled
 def film(

@@ -18,7 +18,6 @@ from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row, styled
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
 
 
-@styled
 @checked
 @styled
 def plot_layout(

@@ -20,7 +20,6 @@ from catenary_fe.views.style import (
 )
 
 
-@styled
 @checked
 @styled
 def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
@@ -63,7 +62,6 @@ def _drawn(wire: WireShapes, mode: int, sideways: bool) -> np.ndarray:
     return np.asarray(shapes[mode])
 
 
-@styled
 @checked
 @styled
 def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:

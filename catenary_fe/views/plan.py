@@ -27,7 +27,6 @@ _CURVE = "#7b4fa3"
 _HEAD = "#dfe7ec"
 
 
-@styled
 @checked
 @styled
 def plot_plan(

@@ -32,7 +32,6 @@ Floats = NDArray[np.float64]
 _NAMED = 12  # supports that a legend has room for
 
 
-@styled
 @checked
 @styled
 def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | None = None) -> Axes:
@@ -85,7 +84,6 @@ def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: st
         )  # fmt: skip
 
 
-@styled
 @checked
 @styled
 def plot_support_uplift(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -129,7 +127,6 @@ def _uplift_bars(ax: Axes, largest: dict[int, float], colours: dict[int, str]) -
     ax.grid(visible=False, axis="x")
 
 
-@styled
 @checked
 @styled
 def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
@@ -155,7 +152,6 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     )
 
 
-@styled
 @checked
 @styled
 def plot_energy(run: Run, *, ax: Axes | None = None) -> Axes:

@@ -22,7 +22,6 @@ _LABELS = {"velocity": "velocity, upwards (mm/s)", "deflection": "uplift (mm)"}
 _SHOWN = 99.8  # [%] of the values lie inside the colour scale: a peak at the head would pale the waves
 
 
-@styled
 @checked
 @styled
 def plot_run_waves(

@@ -16,7 +16,6 @@ _LINES = ("-", "--", ":", "-.")
 
 
 @styled
-@styled
 def plot_space_time(
     x: Floats,
     t: Floats,
@@ -58,7 +57,6 @@ def plot_space_time(
 
 
 @styled
-@styled
 def plot_surface(x: Floats, t: Floats, deflection: Floats, *, title: str = "", ax: Any) -> Any:
     """The deflection as a surface over place and time, on axes with ``projection="3d"``.
 
@@ -77,7 +75,6 @@ def plot_surface(x: Floats, t: Floats, deflection: Floats, *, title: str = "", a
     return ax
 
 
-@styled
 @styled
 def plot_family(
     x: Floats,

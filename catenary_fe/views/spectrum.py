@@ -11,7 +11,6 @@ from catenary_fe.system.arguments import checked, number
 from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed, styled
 
 
-@styled
 @checked
 @styled
 def plot_force_spectrum(run: Run, *, up_to: float = 1.5 * CUT_OFF, ax: Axes | None = None) -> Axes:

@@ -29,7 +29,6 @@ from catenary_fe.views.style import (
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
-@styled
 @checked
 @styled
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:

@@ -18,7 +18,6 @@ _CRITERION: dict[str, Any] = {"color": "#222222", "linewidth": 1.1}
 
 
 @styled
-@styled
 def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Mean force, mean ± 3σ and actual extremes against ``x``, one colour for each combination of ``by``.
 
@@ -45,7 +44,6 @@ def plot_sweep_forces(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
 
 
 @styled
-@styled
 def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Standard deviation against ``x`` with the largest one that is allowed, a share of the mean force."""
     ax = new_axes(ax, (10.0, 4.6))
@@ -65,7 +63,6 @@ def plot_sweep_deviation(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes
     return _finished(ax, rows, x, "σ of the contact force, 0 to 20 Hz (N)", "Standard deviation")
 
 
-@styled
 @styled
 def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | None = None) -> Axes:
     """Largest uplift at a support of the evaluated spans against ``x``."""

@@ -362,3 +362,10 @@ def test_the_pantograph_that_is_out_of_balance_is_named():
     force[1] = 103.0
     run = made_run(None, *TWO, start=(5.0, 6.0), contact_force=force)
     assert remedy(run, "force balance").startswith("share of the uplift force of second by which")
+
+
+def test_what_is_no_number_is_the_worst_of_all():
+    force = np.full((2, 2001), 100.0)
+    force[1, 7] = np.nan
+    run = made_run(None, *TWO, start=(5.0, 6.0), contact_force=force)
+    assert "of second by which" in remedy(run, "force balance")

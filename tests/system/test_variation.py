@@ -1,4 +1,4 @@
-"""Single values changed by their place; a place that is not there is answered by one that is."""
+"""Single values changed by their place, their units; a place that is not there is answered by one that is."""
 
 import pytest
 
@@ -43,8 +43,8 @@ def test_places_that_are_not_there(record, place, said):
     ("place", "unit"),
     [
         ("contact_wire.tension", "N"), ("span.*.pre_sag", "m"), ("span.1.droppers.2.position", "m"),
-        ("pantograph.stages.1.stiffness", "N/m"), ("pantograph.head.width", "m"), ("system_height", "m"),
-        ("span.1.count", ""), ("mean_N", ""),
+        ("pantograph.stages.1.stiffness", "N/m"), ("pantograph.head.width", "m"), ("pantograph.force", "N"),
+        ("system_height", "m"), ("span.1.count", ""), ("mean_N", ""),
     ],
 )  # fmt: skip
 def test_units_of_places(place, unit):

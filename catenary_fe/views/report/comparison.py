@@ -23,7 +23,6 @@ _DIGITS = {
 
 
 @styled
-@styled
 def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal") -> str:
     """HTML of a comparison, complete in itself. Raises InputError for fewer than two runs."""
     columns = key_figures(runs, labels, filter)

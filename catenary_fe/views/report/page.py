@@ -18,7 +18,6 @@ from catenary_fe.views.style import new_axes, styled
 
 
 @styled
-@styled
 def report_page(
     run: Run,
     shape: Shape,
