@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from catenary_fe.results.files import ASIDE, cannot_be_written, locked, replace_all, written_aside
+from catenary_fe.results.files import ASIDE, STRAY, cannot_be_written, locked, replace_all, written_aside
 from catenary_fe.system import InputError
 
 if TYPE_CHECKING:
@@ -47,18 +47,18 @@ class Folder:
     def json(self, name: str, value: Any) -> None:
         """Write a JSON file."""
         text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
-        (self.path / name).write_text(text + "\n", encoding="utf-8")
+        (self.path / name).write_text(text + "\n", encoding="utf-8", errors=STRAY)
 
     def table(self, name: str, rows: Sequence[Mapping[str, Any]]) -> None:
         """Write rows as CSV; the first row names the columns."""
-        with (self.path / name).open("w", newline="", encoding="utf-8") as file:
+        with (self.path / name).open("w", newline="", encoding="utf-8", errors=STRAY) as file:
             writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [])
             writer.writeheader()
             writer.writerows(rows)
 
     def text(self, name: str, text: str) -> None:
         """Write a text file."""
-        (self.path / name).write_text(text, encoding="utf-8")
+        (self.path / name).write_text(text, encoding="utf-8", errors=STRAY)
 
     def picture(self, name: str, ax: Axes) -> None:
         """Write a picture as PNG."""
@@ -73,6 +73,8 @@ def save_picture(path: Path, ax: Axes) -> None:
         metadata = {"Software": None} if path.suffix == ".png" else None
         with written_aside(path) as aside:
             figure.savefig(aside, dpi=130, metadata=metadata)
+    except InputError:
+        raise
     except ValueError as error:  # an unknown format
         raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
 

@@ -144,7 +144,7 @@ def run(
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
-    files = InputFiles.read(layout, names)
+    files = InputFiles.read(layout, names) if output else InputFiles(b"", ())
     if store_wire_ms is None:
         store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()

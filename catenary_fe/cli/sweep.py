@@ -14,6 +14,7 @@ import numpy as np
 
 from catenary_fe.cli.folder import output_folder
 from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import (
     json_option,
     layout_argument,
@@ -238,15 +239,16 @@ def _cases(
 
 def _rows(record: Record) -> list[dict[str, Any]]:
     """One row a pantograph; a failed case has one row with its error."""
+    values = {k: readable(v) if isinstance(v, str) else v for k, v in record["values"].items()}
     if "error" in record:
-        return [record["values"] | {"error": record["error"]}]
+        return [values | {"error": record["error"]}]
     summary = record["summary"]
     common = {
         key: summary[key]
         for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
     }
     return [
-        record["values"]
+        values
         | {"number": i}
         | {key: value for key, value in statistics.items() if key != "name"}
         | common
