@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tempfile
 import time as clock
 import zipfile
 from collections.abc import Callable, Mapping
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.results.files import written_aside
+from catenary_fe.results.files import cannot_be_written, written_aside
 from catenary_fe.system import InputError
 
 INTERVAL = 30.0  # [s] of work between two states on disk
@@ -27,7 +28,7 @@ class Checkpoint:
     carried : arrays to be kept along with the run's own
     kept : arrays that were found in the file, or None
 
-    Raises InputError for a file that is damaged, is something else, or belongs to another run.
+    Raises InputError for a file that is damaged, is something else, belongs to another run, or has no place.
     """
 
     def __init__(self, path: str | Path, key: dict[str, Any]) -> None:
@@ -35,6 +36,7 @@ class Checkpoint:
         self._saved = clock.monotonic()
         self.carried: dict[str, NDArray[Any]] = {}
         self.kept = self._load() if self._path.exists() else None
+        self._check_place()
 
     def _load(self) -> dict[str, NDArray[Any]]:
         try:
@@ -51,6 +53,13 @@ class Checkpoint:
                 " anew, name another file, or give that run's inputs"
             )
         return arrays
+
+    def _check_place(self) -> None:
+        """Better now than after half a minute of work."""
+        try:
+            tempfile.TemporaryFile(dir=self._path.parent).close()
+        except OSError as error:
+            raise InputError(f"checkpoint {cannot_be_written(self._path, error)}") from None
 
     def save_when_due(self, arrays: Callable[[], Mapping[str, NDArray[Any]]]) -> None:
         """Write arrays if the last ones are ``INTERVAL`` old.

@@ -9,6 +9,7 @@ import click
 
 from catenary_fe.cli.criteria import kept_evaluation
 from catenary_fe.cli.folder import output_folder, run_in
+from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import (
     json_option,
     output_option,
@@ -98,5 +99,5 @@ def common_filter(
 
 def _labels(folders: tuple[str, ...]) -> list[str]:
     """Last parts of the paths, or the whole paths where those are not unique."""
-    names = [Path(folder).resolve().name for folder in folders]
-    return names if len(set(names)) == len(names) else list(folders)
+    names = [readable(Path(folder).resolve().name) for folder in folders]
+    return names if len(set(names)) == len(names) else [readable(folder) for folder in folders]

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from catenary_fe.results.csv_files import write_csv
-from catenary_fe.results.files import ASIDE, cannot_be_written, locked, replace_all, written_aside
+from catenary_fe.results.files import ASIDE, STRAY, cannot_be_written, locked, replace_all, written_aside
 from catenary_fe.system import InputError
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Folder:
     def json(self, name: str, value: Any) -> None:
         """Write a JSON file."""
         text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
-        (self.path / name).write_text(text + "\n", encoding="utf-8")
+        (self.path / name).write_text(text + "\n", encoding="utf-8", errors=STRAY)
 
     def table(self, name: str, rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> None:
         """Write rows as CSV, with the digits that the columns' units are worth.
@@ -59,7 +59,7 @@ class Folder:
 
     def text(self, name: str, text: str) -> None:
         """Write a text file."""
-        (self.path / name).write_text(text, encoding="utf-8")
+        (self.path / name).write_text(text, encoding="utf-8", errors=STRAY)
 
     def picture(self, name: str, ax: Axes) -> None:
         """Write a picture as PNG."""
@@ -74,6 +74,8 @@ def save_picture(path: Path, ax: Axes) -> None:
         metadata = {"Software": None} if path.suffix == ".png" else None
         with written_aside(path) as aside:
             figure.savefig(aside, dpi=130, metadata=metadata)
+    except InputError:
+        raise
     except ValueError as error:  # an unknown format
         raise InputError(f"{path}: {str(error).splitlines()[0]}") from None
 

@@ -28,7 +28,14 @@ class InputFiles:
 
     @classmethod
     def read(cls, layout: str, pantographs: Sequence[str]) -> InputFiles:
-        """Read the files named on the command line; names that are no files are the library's."""
+        """Read the files named on the command line; names that are no files are the library's.
+
+        Raises InputError for a layout that comes through a pipe, which was read already.
+        """
+        if not Path(layout).is_file():
+            raise InputError(
+                f"{layout}: a run with -o keeps its layout, which a pipe has only once; give a file"
+            )
         paths = [Path(name) for name in pantographs]
         return cls(
             Path(layout).read_bytes(),

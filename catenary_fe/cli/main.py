@@ -6,6 +6,7 @@ import logging
 import os
 import signal
 import sys
+from contextlib import suppress
 from typing import Any
 
 import click
@@ -22,7 +23,7 @@ from catenary_fe.cli.rerun import rerun
 from catenary_fe.cli.run import run
 from catenary_fe.cli.schema import schema
 from catenary_fe.cli.selfcheck import selfcheck
-from catenary_fe.cli.surroundings import prepare
+from catenary_fe.cli.surroundings import leave, prepare
 from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
@@ -100,7 +101,8 @@ def main(arguments: list[str] | None = None) -> int:
             say("error", f"and {counted(len(lines) - MOST_LINES, 'more fault')} like these", "red")
         return error.exit_code
     except click.ClickException as error:
-        error.show()
+        with suppress(OSError):  # there is nowhere else to say it
+            error.show()
         return 2
     except (click.Abort, KeyboardInterrupt) as stopped:
         cause = stopped.__cause__ if isinstance(stopped, click.Abort) else stopped
@@ -119,7 +121,9 @@ def entry() -> None:
     """Entry point of the installed command."""
     prepare()
     signal.signal(signal.SIGTERM, _stop)
-    sys.exit(main())
+    code = main()
+    leave()
+    sys.exit(code)
 
 
 def _stop(number: int, _frame: Any) -> None:

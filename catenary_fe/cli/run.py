@@ -153,7 +153,7 @@ def run(
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
-    files = InputFiles.read(layout, names)
+    files = InputFiles.read(layout, names) if output else InputFiles(b"", ())
     if store_wire_ms and not output:
         raise click.UsageError("--store-wire-ms has no effect without -o, whose folder keeps the shapes")
     if store_wire_ms is None:

@@ -35,17 +35,34 @@ def prepare() -> None:
         os.environ["MPLCONFIGDIR"] = os.path.join(folder, "matplotlib")
 
 
+def leave() -> None:
+    """Let Python end with the command's exit code, also where what was said last cannot be written."""
+    for name in ("stdout", "stderr"):
+        try:
+            getattr(sys, name).flush()
+        except (OSError, ValueError):
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+
+
 def writes_unicode(stream: object) -> bool:
     """Whether a stream can write every character."""
     encoding = getattr(stream, "encoding", None) or "ascii"
     return codecs.lookup(encoding).name.startswith("utf")
 
 
+def readable(name: str) -> str:
+    """A file's name as a text: for bytes that the surroundings' encoding lacks, Python keeps stand-ins."""
+    try:
+        return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+    except UnicodeEncodeError:
+        return name.encode("ascii", "replace").decode()
+
+
 def _spelt(error: UnicodeError) -> tuple[str, int]:
     """Characters that the stream's encoding lacks, by others that every encoding has."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(map(_spelling, error.object[error.start : error.end])), error.end
+    return "".join(map(_spelling, readable(error.object[error.start : error.end]))), error.end
 
 
 def _spelling(character: str) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 
 from catenary_fe.cli.folder import output_folder
 from catenary_fe.cli.many_values import ManyValues
+from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.sweep_verdicts import Verdict, exit_code, in_words, remarks, verdict_of, warn_once
 from catenary_fe.cli.terminal import (
     json_option,
@@ -271,8 +272,9 @@ def _cases(
 
 def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[dict[str, Any]]:
     """One row a pantograph; a failed case has one row with its error."""
+    values = {k: readable(v) if isinstance(v, str) else v for k, v in record["values"].items()}
     if verdict.error:
-        return [record["values"] | {"error": verdict.error}]
+        return [values | {"error": verdict.error}]
     summary = record["summary"]
     several = len(summary["pantographs"]) > 1
     common = {
@@ -280,7 +282,7 @@ def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[
         for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
     }
     return [
-        record["values"]
+        values
         | {"number": i}
         | ({"governs": "yes" if statistics["name"] == verdict.governing else ""} if several else {})
         | {key: value for key, value in statistics.items() if key != "name"}

@@ -8,7 +8,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -70,8 +70,12 @@ def read_layout(path: str, planar: bool) -> Catenary:
 
 def print_json(value: Any) -> None:
     """One JSON document on standard output; not-a-number never appears in it."""
-    lossy = not writes_unicode(sys.stdout)
-    click.echo(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=lossy))
+    text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
+    try:
+        text.encode(sys.stdout.encoding or "ascii")
+    except UnicodeEncodeError:
+        text = json.dumps(value, indent=2, allow_nan=False)
+    click.echo(text)
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
@@ -105,9 +109,9 @@ def _cell(value: Any) -> str:
 def say(kind: str, text: str, colour: str) -> None:
     """One line on standard error, its first word in colour on a terminal (unless NO_COLOR is set)."""
     coloured = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
-    click.echo(
-        f"{click.style(f'{kind}:', fg=colour, bold=True) if coloured else f'{kind}:'} {text}", err=True
-    )
+    head = click.style(f"{kind}:", fg=colour, bold=True) if coloured else f"{kind}:"
+    with suppress(OSError):  # there is nowhere else to say it
+        click.echo(f"{head} {text}", err=True)
 
 
 def say_lengths(shape: Shape, quiet: bool) -> None:

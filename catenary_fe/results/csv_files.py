@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from catenary_fe.results.files import STRAY
+
 DECIMALS = {
     "mm_per_N": 4, "N_per_m": 1, "kN": 3, "mm": 2, "m": 3, "N": 1, "s": 4, "Hz": 4, "deg": 2, "percent": 3,
     "ratio": 6,
@@ -50,7 +52,7 @@ def write_csv(
 ) -> None:
     """Write rows under named columns, a column's unit being the end of its name."""
     digits = [decimals_of(name, decimals) for name in columns]
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with path.open("w", newline="", encoding="utf-8", errors=STRAY) as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows([cell(value, n) for value, n in zip(row, digits, strict=True)] for row in rows)

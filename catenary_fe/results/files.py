@@ -16,6 +16,7 @@ from catenary_fe.system import InputError
 
 ASIDE = ".part-"  # begins the names of what is not whole yet
 LOCK = ".lock"
+STRAY = "backslashreplace"  # for what is no text in a file's name, which a text may hold: JSON's own escapes
 _FULL = ENOSPC, EDQUOT, EFBIG
 _TAKEN = EACCES, EAGAIN, EDEADLK
 _BEHIND = 1 << 30  # place of the locked byte, beyond the text: Windows lets nobody read a locked byte
@@ -46,7 +47,7 @@ def written_aside(path: str | Path) -> Iterator[Path]:
 def write_text(path: str | Path, text: str) -> None:
     """Write a whole file or none. Raises InputError for a path that cannot be written."""
     with written_aside(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+        aside.write_text(text, encoding="utf-8", errors=STRAY)
 
 
 def replace_all(source: Path, target: Path) -> None:

@@ -197,6 +197,8 @@ def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
     try:
         with written_aside(path) as aside:
             Image.fromarray(pixels).save(aside)
+    except InputError:
+        raise
     except ValueError as error:  # an unknown format
         raise InputError(f"{path}: {error}") from None
 

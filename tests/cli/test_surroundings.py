@@ -12,6 +12,11 @@ import pytest
 
 import catenary_fe
 from catenary_fe.cli import surroundings
+from catenary_fe.cli.folder import output_folder, save_picture
+from catenary_fe.cli.inputs import InputFiles
+from catenary_fe.cli.terminal import print_json
+from catenary_fe.system import InputError
+from catenary_fe.views import plot_layout
 
 CASES = Path(__file__).parents[1] / "cases"
 POLISH = CASES / "polish_name.toml"
@@ -67,6 +72,44 @@ def test_every_encoding_can_be_written(prepared, encoding, written):
     stream.write("σ ≤ 0.3 · 5 N, µ = ½, Łódź, Жд")
     stream.flush()
     assert stream.buffer.getvalue().decode(encoding) == written
+
+
+BYTES = os.fsdecode(b"l\xf3d\xc5\xba")  # of a file's name, of which some are no UTF-8
+
+
+def test_names_of_files_that_are_no_text(prepared, tmp_path):
+    assert surroundings.readable(BYTES) == "l\ufffddź"
+    stream = prepared("utf-8")
+    print_json({"name": BYTES})
+    stream.write(BYTES)
+    stream.flush()
+    *said, last = stream.buffer.getvalue().decode().splitlines()
+    assert json.loads("".join(said))["name"] == BYTES
+    assert last == "l?dź"
+    with output_folder(str(tmp_path)) as folder:
+        folder.json("a.json", {"name": BYTES})
+        folder.table("a.csv", [{"name": BYTES}])
+    assert json.loads((tmp_path / "a.json").read_text("utf-8"))["name"] == BYTES
+    assert "l\\udcf3dź" in (tmp_path / "a.csv").read_text("utf-8")
+
+
+def test_a_layout_from_a_pipe_cannot_be_kept(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="a run with -o keeps its layout, which a pipe has only once"):
+        InputFiles.read(str(tmp_path / "pipe"), [])
+
+
+def test_a_picture_that_cannot_be_written_says_so_once(short, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError) as caught:
+        save_picture(tmp_path / "file" / "a.png", plot_layout(short))
+    assert str(caught.value).count("a.png") == 1
+
+
+def test_what_cannot_be_said_does_not_change_the_exit_code():
+    for device, code in (("2>/dev/full", 3), (">/dev/full 2>&1", 3)):
+        line = f'"{sys.executable}" -m catenary_fe info nowhere.toml {device}'
+        assert subprocess.run(["sh", "-c", line], check=False).returncode == code
 
 
 def test_closed_streams_do_not_end_a_command():

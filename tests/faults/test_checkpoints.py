@@ -92,6 +92,11 @@ def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(shape, line, pan
             cf.simulate(shape, [pantograph], speed=80.0, checkpoint=file)
 
 
+def test_a_place_that_cannot_be_written_is_refused_before_the_run(shape, pantograph, tmp_path):
+    with pytest.raises(cf.InputError, match=r"checkpoint .*nowhere.*: cannot be written: .*; choose another"):
+        cf.simulate(shape, [pantograph], speed=80.0, checkpoint=tmp_path / "nowhere" / "state.npz")
+
+
 @pytest.mark.parametrize("method", ["linearised", "exudyn"])
 def test_other_methods_keep_none(shape, pantograph, tmp_path, method):
     with pytest.raises(cf.InputError, match="only compiled runs with the method nonlinear keep one"):
