@@ -138,7 +138,7 @@ class LoadedLine:
                 supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
             )
             loads = np.stack([system.gather(self.load([x], [force])) for x in positions[mine]])
-            around = _Surroundings(self, near, far)
+            around = _Surroundings(self, stiffness, near, far)
             moved = around.corrected(factor.solve(loads.T).T, loads)
             if moved is None:
                 lifts[mine] = [self._lift(float(x), force) for x in positions[mine]]
@@ -164,7 +164,7 @@ class _Surroundings:
     by a Woodbury update, until nothing changes.
     """
 
-    def __init__(self, line: LoadedLine, near: Floats, far: Floats) -> None:
+    def __init__(self, line: LoadedLine, stiffness: Any, near: Floats, far: Floats) -> None:
         from scipy.sparse.linalg import splu
 
         system, mesh = line.system, line.shape.mesh
@@ -173,8 +173,8 @@ class _Surroundings:
         around = (x > far[0] + 1e-6) & (x <= far[1] + 1e-6) if far[0] > 0 else x <= far[1] + 1e-6
         free = system.place[around & (system.place >= 0)]
         self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
-        alone = system.between(x, far[0] - 1e-6, far[1] + 1e-6)
-        self._stiffness = alone.tangent(np.zeros(x.size))[self.part, self.part]
+        beyond = system.across(x, far[1] + 1e-6).tangent(np.zeros(x.size))
+        self._stiffness = (stiffness - beyond)[self.part, self.part]
         self._factor = splu(self._stiffness.tocsc(), **_NARROW)
         self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
@@ -274,7 +274,8 @@ class _Surroundings:
 
         inner = np.eye(rows.shape[0]) + changed((rows @ columns)[None])
         loads = np.linalg.solve(inner, changed((rows @ answers.T).T))[:, :, 0]
-        updated: Floats = answers - loads @ columns.T
+        # not by BLAS, whose threads cost more than they bring on so little
+        updated: Floats = answers - np.einsum("pm,fm->pf", loads, columns)
         return updated
 
     def _span_change(self, dropper: bool, number: int) -> Any:

@@ -9,8 +9,8 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.held import LINK_STIFFNESS
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.system import LINK_STIFFNESS
 from catenary_fe.fe.wire import WireItems, hold
 from catenary_fe.system import Catenary, SteadyArm
 

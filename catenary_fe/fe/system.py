@@ -31,8 +31,6 @@ from catenary_fe.system import GRAVITY, Catenary
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-LINK_STIFFNESS = 1e7  # [N/m] of a steady arm along its length: a tube's, far stiffer than the wire on it
-
 
 @dataclass(frozen=True)
 class System:
@@ -181,15 +179,31 @@ class System:
         begin, end : [m]
         """
         inside = (x >= begin) & (x <= end)
-        kept = inside[self.first] & inside[self.first + 4 * self.axes - 1]
+        kept = inside[self.first] & inside[self._last]
         return replace(
-            self,
-            first=self.first[kept],
-            cables=Cables(*(values[kept] for values in vars(self.cables).values())),
-            element_mass=self.element_mass[kept],
+            self._with_elements(kept),
             droppers=self.droppers.only(inside[self.droppers.first]),
             arms=self.arms.only(inside[self.arms.first]),
         )
+
+    def across(self, x: Floats, cut: float) -> System:
+        """The same coordinates with the elements alone that begin before a cut [m] and end behind it."""
+        none = np.zeros(x.size, dtype=bool)
+        return replace(
+            self._with_elements((x[self.first] <= cut) & (x[self._last] > cut)),
+            droppers=self.droppers.only(none[self.droppers.first]),
+            arms=self.arms.only(none[self.arms.first]),
+            ground_stiffness=np.zeros(x.size),
+        )
+
+    @property
+    def _last(self) -> Integers:
+        """Shape (elements,): the last coordinate of each element."""
+        return self.first + 4 * self.axes - 1
+
+    def _with_elements(self, kept: NDArray[np.bool_]) -> System:
+        cables = Cables(*(values[kept] for values in vars(self.cables).values()))
+        return replace(self, first=self.first[kept], cables=cables, element_mass=self.element_mass[kept])
 
     def free(self, matrix: Any) -> Any:
         """A matrix over all coordinates as one over the free ones."""
