@@ -302,10 +302,8 @@ def _write(
     columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
     with output_folder(output) as folder:
         assert folder is not None
-        names = {key: f"{key} [{unit}]" if (unit := unit_of(key)) else key for key in columns}
-        table = [{name: row.get(key, "") for key, name in names.items()} for row in rows]
-        folder.table("sweep.csv", table)
-        if said := list(remarks(verdicts)):
+        folder.table("sweep.csv", [_with_units({key: row.get(key, "") for key in columns}) for row in rows])
+        if said := [_with_units(row) for row in remarks(verdicts)]:
             folder.table("remarks.csv", said)
         else:
             folder.forget("remarks.csv")  # of an earlier state of the sweep
@@ -315,6 +313,11 @@ def _write(
             folder.picture("contact_force.png", views.plot_sweep_forces(good, x, by))
             folder.picture("standard_deviation.png", views.plot_sweep_deviation(good, x, by))
             folder.picture("support_uplift.png", views.plot_sweep_uplift(good, x, by))
+
+
+def _with_units(row: dict[str, Any]) -> dict[str, Any]:
+    """A table's row, columns of varied values named with their units."""
+    return {f"{key} [{unit}]" if (unit := unit_of(key)) else key: value for key, value in row.items()}
 
 
 def _axis(axes: dict[str, list[Any]]) -> tuple[str | None, list[str]]:
