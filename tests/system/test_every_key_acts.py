@@ -125,7 +125,8 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
         for name, inner in node["properties"].items():
             yield from keys(schema, inner, f"{place}.{name}" if place else name)
         return
-    branches = node.get("anyOf", []) + ([node["items"]] if "items" in node else [])
+    branches = node.get("anyOf", []) + node.get("allOf", [])  # the latter by old versions of pydantic
+    branches += [node["items"]] if "items" in node else []
     tables = [b for b in branches if "$ref" in b or "items" in b]
     inside = [k for b in tables for k in keys(schema, b, place)]
     yield from inside or [place]
