@@ -36,22 +36,29 @@ def inner_forces(cables: Cables, values: Floats) -> Floats:
 
     values : shape (elements, 4, axes), position and slope of the first node, then of the second
     """
-    total = np.zeros_like(values)
-    for xi, share in zip(*_AXIAL, strict=True):
-        a, _ = _weights((xi + 1) / 2, cables.length)
-        r = np.einsum("ei,eik->ek", a, values)
-        stretch = np.linalg.norm(r, axis=1)
-        size = cables.axial_stiffness * cables.length * (1 - (1 + cables.rest_strain) / stretch)
-        total += share / 2 * a[:, :, None] * (size[:, None] * r)[:, None, :]
-    for xi, share in zip(*_BENDING, strict=True):
-        a, b = _weights((xi + 1) / 2, cables.length)
-        r, bend = (np.einsum("ei,eik->ek", w, values) for w in (a, b))
-        g, bb, ab = ((u * v).sum(axis=1)[:, None] for u, v in ((r, r), (bend, bend), (r, bend)))
-        scale = (cables.bending_stiffness * cables.length)[:, None] / g**2
-        by_a = scale * ((bb - 2 * (g * bb - ab**2) / g) * r - ab * bend)
+    L = cables.length[:, None]
+    chord, first, last = (values[:, 2] - values[:, 0]) / L, values[:, 1], values[:, 3]
+    on_chord, on_first, on_last = (np.zeros_like(chord) for _ in range(3))
+    for xi, share in zip((_AXIAL[0] + 1) / 2, _AXIAL[1] / 2, strict=True):
+        c, f, m = 6 * xi - 6 * xi**2, 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi
+        r = c * chord + f * first + m * last
+        tension = 1 - (1 + cables.rest_strain) / np.sqrt(np.einsum("ek,ek->e", r, r))
+        pull = (share * cables.axial_stiffness * cables.length * tension)[:, None] * r
+        on_chord += c * pull
+        on_first += f * pull
+        on_last += m * pull
+    for xi, share in zip((_BENDING[0] + 1) / 2, _BENDING[1] / 2, strict=True):
+        c, f, m = 6 * xi - 6 * xi**2, 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi
+        cc, ff, mm = (w / L for w in (6 - 12 * xi, 6 * xi - 4, 6 * xi - 2))
+        r, bend = c * chord + f * first + m * last, cc * chord + ff * first + mm * last
+        g, bb, ab = (np.einsum("ek,ek->e", u, v)[:, None] for u, v in ((r, r), (bend, bend), (r, bend)))
+        scale = share * cables.bending_stiffness[:, None] * L / g**2
+        by_a = scale * ((2 * ab**2 / g - bb) * r - ab * bend)
         by_b = scale * (g * bend - ab * r)
-        total += share / 2 * (a[:, :, None] * by_a[:, None, :] + b[:, :, None] * by_b[:, None, :])
-    return total
+        on_chord += c * by_a + cc * by_b
+        on_first += f * by_a + ff * by_b
+        on_last += m * by_a + mm * by_b
+    return np.stack([-on_chord / L, on_first, on_chord / L, on_last], axis=1)
 
 
 def tangent_blocks(cables: Cables, values: Floats, *, definite: bool = False) -> Floats:
