@@ -137,7 +137,7 @@ class LoadedLine:
             near, far = (
                 supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
             )
-            loads = np.stack([system.gather(self.load([x], [force])) for x in positions[mine]])
+            loads = np.stack([self._free_load(float(x), force) for x in positions[mine]])
             around = _Surroundings(self, stiffness, near, far)
             moved = around.corrected(factor.solve(loads.T).T, loads)
             if moved is None:
@@ -150,6 +150,13 @@ class LoadedLine:
             if progress:
                 progress((int(mine[-1]) + 1) / positions.size)
         return lifts
+
+    def _free_load(self, x: float, force: float) -> Floats:
+        """[N], shape (free,): an upward force [N] at a place [m]."""
+        index, weights = self.at(x)
+        place, load = self.system.place[index], np.zeros(self.system.size)
+        np.add.at(load, place[place >= 0], force * weights[place >= 0])
+        return load
 
     def _lift(self, x: float, force: float) -> float:
         """[m], by Newton's method on the whole line."""
@@ -179,7 +186,7 @@ class _Surroundings:
         self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
         self._blocks, self._inner = tangent_blocks(self._cables, rest), inner_forces(self._cables, rest)
-        self._columns: dict[tuple[bool, int], Floats] = {}
+        self._known: dict[tuple[bool, int], tuple[Any, Floats]] = {}
 
     def _take(self, inside: System) -> None:
         """Elements and springs, their coordinates numbered anew."""
@@ -263,8 +270,9 @@ class _Surroundings:
         from scipy.sparse import vstack
 
         points, axes = len(answers), self.axes
-        rows = vstack([self._span_change(*spring) for spring in changes]).tocsr()
-        columns = np.concatenate([self._column(*spring) for spring in changes], axis=1)
+        known = [self._opened(*spring) for spring in changes]
+        rows = vstack([row for row, _ in known]).tocsr()
+        columns = np.concatenate([column for _, column in known], axis=1)
         blocks = np.stack(list(changes.values()), axis=1)
 
         def changed(values: Floats) -> Floats:
@@ -278,23 +286,20 @@ class _Surroundings:
         updated: Floats = answers - np.einsum("pm,fm->pf", loads, columns)
         return updated
 
-    def _span_change(self, dropper: bool, number: int) -> Any:
-        """Sparse, shape (axes, part): of a spring's span with the free coordinates."""
+    def _opened(self, dropper: bool, number: int) -> tuple[Any, Floats]:
+        """A spring's span with the free coordinates, sparse, shape (axes, part), and what opening it does.
+
+        That is the line's answer, shape (part, axes), to forces that open the span.
+        """
         from scipy.sparse import csr_matrix
 
-        springs = self._springs[0 if dropper else 1]
-        at = springs.index()[number]
-        signs = np.repeat([-1.0, 1.0][: at.size // self.axes], self.axes)
-        shape = (self.axes, self._reference.size)
-        change = csr_matrix((signs, (np.arange(at.size) % self.axes, at)), shape=shape)
-        return change @ self._gather.T
-
-    def _column(self, dropper: bool, number: int) -> Floats:
-        """Shape (part, axes): answers of the line to forces that open a spring's span."""
-        if (dropper, number) not in self._columns:
-            row = self._span_change(dropper, number)
-            self._columns[dropper, number] = self._factor.solve(row.toarray().T)
-        return self._columns[dropper, number]
+        if (dropper, number) not in self._known:
+            at = self._springs[0 if dropper else 1].index()[number]
+            signs = np.repeat([-1.0, 1.0][: at.size // self.axes], self.axes)
+            shape = (self.axes, self._reference.size)
+            row = csr_matrix((signs, (np.arange(at.size) % self.axes, at)), shape=shape) @ self._gather.T
+            self._known[dropper, number] = row, self._factor.solve(row.toarray().T)
+        return self._known[dropper, number]
 
 
 def _summed(values: Floats, index: Integers, size: int) -> Floats:
