@@ -22,7 +22,7 @@ Progress = Callable[[float], None]
 _ITERATIONS, _LEAST_STEP, _LOAD_STEPS = 60, 1e-4, 20
 _SETTLED = 1e-9  # of the largest force on a coordinate; rounding of EA ε leaves 1e-5 N
 _FLOOR = 1e-4  # [N]
-_NEAR, _FAR = 1, 3  # spans beside that of a force; what is left out there moves a lift by up to 3e-4
+_NEAR, _FAR = 1, 2  # spans beside that of a force; what is left out there moves a lift by up to 4e-4
 _NARROW: dict[str, Any] = {  # in the order of the stations the factor is narrow
     "permc_spec": "NATURAL",
     "diag_pivot_thresh": 0.0,
@@ -186,6 +186,10 @@ class _Surroundings:
         self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
         self._blocks, self._inner = tangent_blocks(self._cables, rest), inner_forces(self._cables, rest)
+        self._at_rest = [
+            (s.index(), s.blocks(self._reference, taut=True), s.forces(self._reference))
+            for s in self._springs
+        ]
         self._known: dict[tuple[bool, int], tuple[Any, Floats]] = {}
 
     def _take(self, inside: System) -> None:
@@ -235,11 +239,10 @@ class _Surroundings:
         inner = inner_forces(many, total).reshape(points, *self._index.shape)
         linear = np.einsum("eij,pej->pei", self._blocks, here)
         found = _summed(linear + self._inner.reshape(self._index.shape) - inner, self._index, size)
-        for springs in self._springs:
-            index, blocks = springs.index(), springs.blocks(self._reference, taut=True)
+        for springs, (index, blocks, forces) in zip(self._springs, self._at_rest, strict=True):
             linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
             now = springs.forces(self._reference + moved)
-            found += _summed(now - springs.forces(self._reference) + linear, index, size)
+            found += _summed(now - forces + linear, index, size)
         extra: Floats = (self._gather @ found.T).T
         return extra
 
