@@ -13,7 +13,8 @@ from catenary_fe.equilibrium.form_checks import check_links, dropper_names
 from catenary_fe.equilibrium.installed import installed_lines
 from catenary_fe.equilibrium.shape import HangingWire, Shape
 from catenary_fe.equilibrium.taut_wires import TautProblem, TautWires
-from catenary_fe.fe.installation import Installation, curve_pulls, wire_kinds
+from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.installation import Installation, curve_pulls
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.system import balanced
@@ -67,9 +68,7 @@ class Hanging:
         wires = self.wires
         rise = self.found[:, wires.dof[wires.left + 1]] - self.found[:, wires.dof[wires.left]]
         arc = np.sqrt(1 + ((rise / wires.length) ** 2).sum(axis=0))
-        kinds = wire_kinds(self.catenary, self.mesh)
-        EA, T = (np.array([float(getattr(k, n)) for k in kinds]) for n in ("axial_stiffness", "tension"))
-        stretch = 1 + (arc * wires.tension - T[wires.wire_of]) / EA[wires.wire_of]
+        stretch = 1 + (arc * wires.tension - wires.of_wire("tension")) / wires.of_wire("axial_stiffness")
         longer: Floats = arc / stretch
         return longer
 
@@ -137,6 +136,7 @@ class Hanging:
                 held[self._at_support(wire, i)] = support.stagger + offset
         return held
 
+    @cached_property
     def _arm_springs(self) -> Any:
         """Sparse stiffness [N/m] of arms that do not hold the contact wire's height."""
         from scipy.sparse import coo_matrix
@@ -151,7 +151,7 @@ class Hanging:
     def _heights(self) -> TautProblem:
         """The wires with their droppers cut, the contact wires held where the droppers were."""
         held = dict(zip(self._lower.tolist(), self.catenary.design_heights.tolist(), strict=True))
-        return self.wires.problem(held | self._held_heights(), self._arm_springs())
+        return self.wires.problem(held | self._held_heights(), self._arm_springs)
 
     # to hang
 
@@ -216,7 +216,7 @@ class Hanging:
     def _residual(self, found: Floats, force: Floats, lengths: Floats) -> Floats:
         """[N], shape (axes - 1, 2 * nodes), out of balance; what holds a held place is missing."""
         residual = np.stack([f - self.wires.stiffness @ u for f, u in zip(force, found, strict=True)])
-        residual[-1] -= self._arm_springs() @ found[-1]
+        residual[-1] -= self._arm_springs @ found[-1]
         span = self.spread(found)
         pull = (self.tensions(lengths, span) / np.linalg.norm(span, axis=1))[:, None] * span
         for k in range(self.axes - 1):
@@ -227,27 +227,23 @@ class Hanging:
     def _energy(self, found: Floats, force: Floats, lengths: Floats) -> float:
         """[J] in wires, arms and droppers, with the potential of the loads."""
         bent = sum(float(u @ (self.wires.stiffness @ u)) for u in found)
-        bent += float(found[-1] @ (self._arm_springs() @ found[-1]))
+        bent += float(found[-1] @ (self._arm_springs @ found[-1]))
         droppers = float((self.tensions(lengths, self.spread(found)) ** 2 / self.stiffness).sum())
         return (bent + droppers) / 2 - float((force * found).sum())
 
     def _newton_step(self, force: Floats, lengths: Floats) -> Floats:
-        from scipy.sparse import block_diag, coo_matrix
+        from scipy.sparse import block_diag
         from scipy.sparse.linalg import splu
 
         size = 2 * self.wires.nodes
-        K = block_diag(
-            [*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs()]
-        )
+        K = block_diag([*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs])
         span = self.spread()
         tension = self.tensions(lengths, span)
         blocks = spring_blocks(span[:, 1:], tension, np.where(tension > 0, self.stiffness, 0.0))
         axis = size * np.arange(self.axes - 1)
         lower, upper = self._lower[:, None] + axis, self._upper[:, None] + axis
         index, blocks = np.hstack([lower, upper]), np.block([[blocks, -blocks], [-blocks, blocks]])
-        m = index.shape[1]
-        place = np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel()
-        K = (K + coo_matrix((blocks.ravel(), place), shape=K.shape)).tocsr()
+        K = (K + scattered([(index, blocks)], K.shape[0])).tocsr()
         free = np.tile(~self.wires.idle, self.axes - 1)
         held = np.array(list(self._held_heights()), dtype=np.int64) + axis[-1]
         free[held] = False

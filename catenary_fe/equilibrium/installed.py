@@ -48,11 +48,7 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
     axes, left = points.shape[1], wires.left
     slopes = np.concatenate([line.slopes for line in lines])
     lengths = np.concatenate([line.lengths for line in lines])
-    kinds = wire_kinds(wires.catenary, wires.mesh)
-    EA, T = (
-        np.array([float(getattr(kind, name)) for kind in kinds])[wires.wire_of]
-        for name in ("axial_stiffness", "tension")
-    )
+    EA, T = wires.of_wire("axial_stiffness"), wires.of_wire("tension")
     pull = np.zeros((left.size, axes))  # [N/kg]
     pull[:, -1] = -GRAVITY
     if axes == 3:

@@ -178,8 +178,7 @@ def dropper_rows(shape: Shape) -> list[DropperRow]:
 def _hangs_on(shape: Shape, dropper: int) -> str | None:
     if not shape.stitch_wires:
         return None
-    on_stitch = shape.mesh.upper.wire[dropper] >= shape.mesh.first_stitch
-    return "stitch wire" if on_stitch else "messenger wire"
+    return shape.mesh.wire_name(int(shape.mesh.upper.wire[dropper]))
 
 
 def support_rows(shape: Shape) -> list[SupportRow]:

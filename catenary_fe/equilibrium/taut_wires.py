@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.installation import element_pulls, wire_kinds
+from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.installation import element_pulls, element_values
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.system import Catenary
 
@@ -125,19 +126,19 @@ class TautWires:
         """[N], shape (elements,), along the track."""
         return np.concatenate(element_pulls(self.catenary, self.mesh))
 
-    def _of_wire(self, name: str) -> Floats:
-        kinds = wire_kinds(self.catenary, self.mesh)
-        return np.array([float(getattr(kind, name)) for kind in kinds])[self.wire_of]
+    def of_wire(self, name: str) -> Floats:
+        """Shape (elements,): a parameter of each element's wire."""
+        return element_values(self.catenary, self.mesh, name)
 
     @cached_property
     def weight(self) -> Floats:
         """[kg/m], shape (elements,), of the wires."""
-        return self._of_wire("mass_per_length")
+        return self.of_wire("mass_per_length")
 
     @cached_property
     def bending_stiffness(self) -> Floats:
         """[N m²], shape (elements,)."""
-        return self._of_wire("bending_stiffness")
+        return self.of_wire("bending_stiffness")
 
     @cached_property
     def index(self) -> Integers:
@@ -148,12 +149,8 @@ class TautWires:
     @cached_property
     def stiffness(self) -> Any:
         """Sparse, shape (2 * nodes, 2 * nodes)."""
-        from scipy.sparse import coo_matrix
-
         blocks = exact_stiffness(self.tension, self.bending_stiffness, self.length)
-        rows, columns = np.repeat(self.index, 4, axis=1).ravel(), np.tile(self.index, (1, 4)).ravel()
-        size = 2 * self.nodes
-        return coo_matrix((blocks.ravel(), (rows, columns)), shape=(size, size)).tocsr()
+        return scattered([(self.index, blocks)], 2 * self.nodes)
 
     def load(self, per_length: Floats) -> Floats:
         """Shape (2 * nodes,): of a load [N/m] on each element, shape (elements,)."""

@@ -119,6 +119,12 @@ def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
     return lines
 
 
+def element_values(catenary: Catenary, mesh: Mesh, name: str) -> Floats:
+    """Shape (elements of all wires,): a parameter of each element's wire, by its name."""
+    counts = [wire.x.size - 1 for wire in mesh.wires]
+    return np.repeat([float(getattr(kind, name)) for kind in wire_kinds(catenary, mesh)], counts)
+
+
 def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
     """[N], for each wire shape (elements,): nominal pull along the track.
 

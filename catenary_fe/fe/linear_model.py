@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.cable import tangent_blocks
 from catenary_fe.fe.installation import Installation, element_pulls
 from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.spring import FIXED
 from catenary_fe.fe.system import System, assemble
 from catenary_fe.system import Catenary
 
@@ -29,7 +30,6 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 ALONG = 0
-HELD = -1  # number of a coordinate that cannot move
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class ContactLine:
     lengths : [m], shape (nodes - 1,), of the elements
     static : [m and 1], shape (nodes, 2), height and vertical slope at rest
     lateral : [m and 1], shape (nodes, 2), likewise to the left
-    index : shape (nodes, 2), numbers of the coordinates of height and slope, or HELD
-    supports : shape (spans + 1,), numbers of the height at the supports, or HELD
+    index : shape (nodes, 2), numbers of the coordinates of height and slope, or FIXED
+    supports : shape (spans + 1,), numbers of the height at the supports, or FIXED
     """
 
     x: Floats
@@ -72,7 +72,7 @@ class SwingingLinks:
 class Bows:
     """Elements seen along one axis across the track, of which each has one or two.
 
-    index : shape (bows, 4), numbers of place and slope at the first node, then at the second, or HELD
+    index : shape (bows, 4), numbers of place and slope at the first node, then at the second, or FIXED
     length : [m], shape (bows,)
     gap : shape (bows,), number of the element's gap in ``tensions``
     """
@@ -106,7 +106,7 @@ class LinearModel:
     dropper_tension : [N], shape (droppers,), at rest; below 0 for those that are slack there: what they would
         push with if they could
     contacts : the contact wires
-    heights : shape (nodes of all wires,), numbers of the coordinates up, or HELD
+    heights : shape (nodes of all wires,), numbers of the coordinates up, or FIXED
     tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
     links : steady arms that swing
     bows : elements whose inclination lengthens a gap
@@ -352,7 +352,7 @@ class _Triplets:
 def _kept(
     system: System, mesh: Mesh, installation: Installation, wires: list[_ReducedWire], gaps: int
 ) -> tuple[Any, Integers]:
-    """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or HELD.
+    """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or FIXED.
 
     A gap's tension comes just before the gap's end.
     """
@@ -373,9 +373,9 @@ def _kept(
     of_free[columns] = station[rows]
     is_tension = np.arange(T.shape[1]) >= T.shape[1] - gaps
     order = np.lexsort((~is_tension, of_free))[: int(np.isfinite(of_free).sum())]
-    new = np.full(T.shape[1], HELD, dtype=np.int64)
+    new = np.full(T.shape[1], FIXED, dtype=np.int64)
     new[order] = np.arange(order.size)
-    place = np.full(T.shape[0], HELD, dtype=np.int64)
+    place = np.full(T.shape[0], FIXED, dtype=np.int64)
     place[rows] = new[columns]
     return T[:, order].tocsr(), place
 

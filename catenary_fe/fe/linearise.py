@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe import cable
+from catenary_fe.fe.assembly import scattered
 from catenary_fe.fe.wire import WireItems
 
 Floats = NDArray[np.float64]
@@ -58,14 +59,9 @@ def first_coordinate(mbs: exu.MainSystem, wire: WireItems) -> int:
 
 
 def _assemble(mbs: exu.MainSystem, wires: Sequence[WireItems], blocks: Sequence[Floats]) -> Any:
-    from scipy.sparse import coo_matrix
-
-    rows, columns = [], []
+    parts = []
     for wire, values in zip(wires, blocks, strict=True):
         count, m = values.shape[:2]
-        index = first_coordinate(mbs, wire) + wire.coordinates * np.arange(count)[:, None] + np.arange(m)
-        rows.append(np.repeat(index, m, axis=1).ravel())
-        columns.append(np.tile(index, (1, m)).ravel())
-    size = mbs.systemData.ODE2Size()
-    triplets = (np.concatenate([b.ravel() for b in blocks]), (np.concatenate(rows), np.concatenate(columns)))
-    return coo_matrix(triplets, shape=(size, size)).tocsr()
+        first = first_coordinate(mbs, wire) + wire.coordinates * np.arange(count)[:, None]
+        parts.append((first + np.arange(m), values))
+    return scattered(parts, mbs.systemData.ODE2Size())

@@ -16,14 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.assembly import scattered
 from catenary_fe.fe.cable import Cables, inner_forces, mass_blocks, strain_energy, tangent_blocks
 from catenary_fe.fe.held import Held
 from catenary_fe.fe.installation import (
     Installation,
     curve_pulls,
     dropper_damping,
+    element_values,
     point_masses,
-    wire_kinds,
 )
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
@@ -114,23 +115,21 @@ class System:
         moved : shape (all,), displacements
         taut : all droppers count as taut, else slack ones are left out
         """
-        total, index = self.reference + moved, self.elements()
-        parts = [(index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes)))]
-        for springs in (self.droppers, self.arms):
-            parts.append((springs.index(), springs.blocks(total, taut=taut)))
-        diagonal = np.arange(self.place.size)[:, None]
-        parts.append((diagonal, self.ground_stiffness[:, None, None]))
-        return self._assembled(parts)
+        total = self.reference + moved
+        parts = [self._wire_part(total), *self._spring_parts(total, taut)]
+        return scattered(parts, self.size, self.place)
+
+    def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
+        index = self.elements()
+        return index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes))
+
+    def _spring_parts(self, total: Floats, taut: bool) -> list[tuple[Integers, Floats]]:
+        springs = [(s.index(), s.blocks(total, taut=taut)) for s in (self.droppers, self.arms)]
+        return [*springs, (np.arange(self.place.size)[:, None], self.ground_stiffness[:, None, None])]
 
     def wire_stiffness(self) -> Any:
         """Stiffness of the wires alone where they were installed, over all coordinates, sparse."""
-        from scipy.sparse import coo_matrix
-
-        index, size = self.elements(), self.place.size
-        blocks = tangent_blocks(self.cables, self.reference[index].reshape(-1, 4, self.axes))
-        m = index.shape[1]
-        place = np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel()
-        return coo_matrix((blocks.ravel(), place), shape=(size, size)).tocsr()
+        return scattered([self._wire_part(self.reference)], self.place.size)
 
     def damping(self) -> Any:
         """Damping over all coordinates, without that of droppers, sparse: α M + β K of the wires, springs.
@@ -162,16 +161,7 @@ class System:
 
     def spring_stiffness(self) -> Any:
         """Stiffness of droppers (taut), arms and supports at rest, over all coordinates, sparse."""
-        from scipy.sparse import coo_matrix, diags
-
-        size = self.place.size
-        total = diags(self.ground_stiffness).tocsr()
-        for springs in (self.droppers, self.arms):
-            index, blocks = springs.index(), springs.blocks(self.reference, taut=True)
-            m = index.shape[1]
-            place = np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel()
-            total = total + coo_matrix((blocks.ravel(), place), shape=(size, size)).tocsr()
-        return total
+        return scattered(self._spring_parts(self.reference, True), self.place.size)
 
     def between(self, x: Floats, begin: float, end: float) -> System:
         """The same coordinates with the elements, droppers and arms of a part of the line alone.
@@ -221,22 +211,10 @@ class System:
         """Shape (elements, 4 * axes): coordinates of each cable element."""
         return self.first[:, None] + np.arange(4 * self.axes)
 
-    def _assembled(self, parts: list[tuple[Integers, Floats]]) -> Any:
-        """Sparse over the free coordinates, of blocks at coordinates among all."""
-        from scipy.sparse import coo_matrix
-
-        rows = np.concatenate([np.repeat(i, i.shape[1], axis=1).ravel() for i, _ in parts])
-        columns = np.concatenate([np.tile(i, (1, i.shape[1])).ravel() for i, _ in parts])
-        values = np.concatenate([block.ravel() for _, block in parts])
-        rows, columns = self.place[rows], self.place[columns]
-        moves = (rows >= 0) & (columns >= 0)
-        shape = (self.size, self.size)
-        return coo_matrix((values[moves], (rows[moves], columns[moves])), shape=shape).tocsr()
-
 
 def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> System:
     """The line as it was installed, as one system."""
-    from scipy.sparse import coo_matrix, diags
+    from scipy.sparse import diags
 
     lines, axes = installation.lines, installation.axes
     width, first_nodes = 2 * axes, mesh.first_nodes
@@ -244,38 +222,27 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
     first = np.concatenate(
         [width * (n + np.arange(line.lengths.size)) for n, line in zip(first_nodes, lines, strict=False)]
     )
-    kinds = wire_kinds(catenary, mesh)
-    counts = [line.lengths.size for line in lines]
     lengths = np.concatenate([line.lengths for line in lines])
-    per_length = np.repeat([float(kind.mass_per_length) for kind in kinds], counts)
-    index = first[:, None] + np.arange(2 * width)
-    blocks = mass_blocks(lengths, per_length, axes)
-    rows, columns = np.repeat(index, 2 * width, axis=1).ravel(), np.tile(index, (1, 2 * width)).ravel()
-
-    def assembled(factors: Floats | None = None) -> Any:
-        values = blocks if factors is None else blocks * factors[:, None, None]
-        return coo_matrix((values.ravel(), (rows, columns)), shape=(size, size)).tocsr()
-
-    wire_mass = assembled()
+    per_length, EA, EI, tension = (
+        element_values(catenary, mesh, name)
+        for name in ("mass_per_length", "axial_stiffness", "bending_stiffness", "tension")
+    )
+    index, blocks = first[:, None] + np.arange(2 * width), mass_blocks(lengths, per_length, axes)
+    wire_mass = scattered([(index, blocks)], size)
     masses, hanging = point_masses(catenary, mesh, installation.dropper_lengths)
     ups, points = np.zeros((size // width, width)), np.zeros((size // width, width))
     ups[:, axes - 1], points[:, :axes] = 1.0, 1.0
     force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
     if axes == 3:
-        left = np.roll(ups, -1, axis=1).ravel()
-        force += assembled(np.concatenate(curve_pulls(catenary, mesh))) @ left
+        pulls = np.concatenate(curve_pulls(catenary, mesh))[:, None, None]
+        force += scattered([(index, blocks * pulls)], size) @ np.roll(ups, -1, axis=1).ravel()
     held = Held(catenary, mesh, installation, size)
     return System(
         axes=axes,
         reference=installation.coordinates(),
         place=held.place(lines),
         first=first,
-        cables=Cables(
-            length=lengths,
-            axial_stiffness=np.repeat([float(k.axial_stiffness) for k in kinds], counts),
-            bending_stiffness=np.repeat([float(k.bending_stiffness) for k in kinds], counts),
-            rest_strain=np.repeat([-k.tension / k.axial_stiffness for k in kinds], counts),
-        ),
+        cables=Cables(lengths, EA, EI, -tension / EA),
         element_mass=blocks,
         wire_mass=wire_mass,
         mass=(wire_mass + diags(np.repeat(masses, width) * points.ravel())).tocsr(),

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.analysis.linearised.arrays import Bowed, Columns, Line, Links, Operator, Quads, Rows, Scheme
-from catenary_fe.fe.linear_model import HELD, LinearModel
+from catenary_fe.fe.linear_model import LinearModel
 from catenary_fe.fe.solver_settings import TimeSettings
+from catenary_fe.fe.spring import FIXED
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -174,9 +175,9 @@ def _line(model: LinearModel, factor: Any) -> Line:
 
     contacts = model.contacts
     at = np.concatenate([wire.index for wire in contacts])
-    free = np.unique(at[at != HELD])
-    column = np.full(at.shape, HELD, dtype=np.int64)
-    column[at != HELD] = np.searchsorted(free, at[at != HELD])
+    free = np.unique(at[at != FIXED])
+    column = np.full(at.shape, FIXED, dtype=np.int64)
+    column[at != FIXED] = np.searchsorted(free, at[at != FIXED])
     units = csc_matrix((np.ones(free.size), (free, np.arange(free.size))), shape=(model.size, free.size))
     return Line(
         first=np.cumsum([0, *(wire.x.size for wire in contacts)]),
