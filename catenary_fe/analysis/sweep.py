@@ -36,8 +36,6 @@ from catenary_fe.system.arguments import whole
 Progress = Callable[[int, int], None]
 LOST = "lost"  # marks the record of a case that was killed: it is not kept
 _log = logging.getLogger(__name__)
-
-
 RESULTS = 3  # rises when the same inputs give other results: cases that were kept are then computed anew
 
 
