@@ -6,10 +6,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis import modal_run, simulate, solve_modes
-    from catenary_fe.equilibrium import Shape, find_form, find_heights
-    from catenary_fe.equilibrium.statics import StaticState, elasticity, solve_statics
-    from catenary_fe.fe import MeshSettings, TimeSettings
+    from catenary_fe.engines.exudyn.wire_run import run_wire
+    from catenary_fe.engines.settings import TimeSettings
+    from catenary_fe.fe import MeshSettings
     from catenary_fe.fe.wire_problem import (
         SlidingPantograph,
         WireMotion,
@@ -17,28 +16,17 @@ if TYPE_CHECKING:
         even_nodes,
         graded_nodes,
     )
-    from catenary_fe.fe.wire_run import run_wire
-    from catenary_fe.results import (
-        Criterion,
-        Elasticity,
-        ForceStatistics,
-        ModalRun,
-        Modes,
-        Run,
-        criteria_rows,
-        load_run,
-    )
-    from catenary_fe.system import (
+    from catenary_fe.layout import (
         AerodynamicForce,
         Catenary,
         CatenaryError,
         Dropper,
         ElasticPantograph,
         InputError,
-        Interrupted,
         Panhead,
         Pantograph,
         RayleighDamping,
+        RunInterrupted,
         SolverError,
         Span,
         Stage,
@@ -52,15 +40,30 @@ if TYPE_CHECKING:
         load_pantograph,
         target_mean_force,
     )
+    from catenary_fe.results import (
+        Criterion,
+        Elasticity,
+        ForceStatistics,
+        ModalRun,
+        Modes,
+        Run,
+        criteria_rows,
+        load_run,
+    )
+    from catenary_fe.statics import Shape, find_form, find_heights
+    from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
+    from catenary_fe.studies import modal_run, simulate, solve_modes
 
 # loaded on first use: importing the package stays quick
 _ROOMS = {
-    "analysis": ("modal_run", "simulate", "solve_modes"),
-    "equilibrium": ("Shape", "find_form", "find_heights"),
-    "equilibrium.statics": ("StaticState", "elasticity", "solve_statics"),
-    "fe": ("MeshSettings", "TimeSettings"),
+    "engines.modal.modes": ("solve_modes",),
+    "engines.modal.run": ("modal_run",),
+    "engines.settings": ("TimeSettings",),
+    "engines.exudyn.wire_run": ("run_wire",),
+    "statics": ("Shape", "find_form", "find_heights"),
+    "statics.elasticity": ("StaticState", "elasticity", "solve_statics"),
+    "fe": ("MeshSettings",),
     "fe.wire_problem": ("SlidingPantograph", "WireMotion", "WireProblem", "even_nodes", "graded_nodes"),
-    "fe.wire_run": ("run_wire",),
     "results": (
         "Criterion",
         "Elasticity",
@@ -71,14 +74,15 @@ _ROOMS = {
         "criteria_rows",
         "load_run",
     ),
-    "system": (
+    "studies.simulate": ("simulate",),
+    "layout": (
         "AerodynamicForce",
         "Catenary",
         "CatenaryError",
         "Dropper",
         "ElasticPantograph",
         "InputError",
-        "Interrupted",
+        "RunInterrupted",
         "Panhead",
         "Pantograph",
         "RayleighDamping",
@@ -108,7 +112,6 @@ __all__ = [
     "Elasticity",
     "ForceStatistics",
     "InputError",
-    "Interrupted",
     "MeshSettings",
     "ModalRun",
     "Modes",
@@ -116,6 +119,7 @@ __all__ = [
     "Pantograph",
     "RayleighDamping",
     "Run",
+    "RunInterrupted",
     "Shape",
     "SlidingPantograph",
     "SolverError",

@@ -12,8 +12,8 @@ from typing import Any
 from docutils import nodes
 from docutils.parsers.rst import Directive
 
-from catenary_fe.system.files import layout_schema, pantograph_schema
-from catenary_fe.system.parameters import LARGEST
+from catenary_fe.layout.files import layout_schema, pantograph_schema
+from catenary_fe.layout.parameters import LARGEST
 
 SCHEMAS = {"layout": layout_schema, "pantograph": pantograph_schema}
 EXAMPLES = Path(__file__).parent / "reference" / "examples"
@@ -295,7 +295,7 @@ class LibraryNames(Directive):
 
     def run(self) -> list[nodes.Node]:
         """Nodes in place of the directive."""
-        from catenary_fe.system import library
+        from catenary_fe.layout import library
 
         finders = {"wires": library.wire_record, "pantographs": library.pantograph, "lines": library.line}
         found: list[nodes.Node] = []

@@ -11,7 +11,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from catenary_fe.system import InputError
+from catenary_fe.layout import InputError
 from validation.case import Checks, Outcome
 from validation.cases import CASES
 

@@ -27,7 +27,7 @@ def pantograph_names(
     context: click.Context, parameter: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """The library's pantographs, and files."""
-    from catenary_fe.system import library
+    from catenary_fe.layout import library
 
     begun = incomplete.strip("'\"").casefold()
     names = [name for name in library.names("pantographs") if name.casefold().startswith(begun)]

@@ -10,12 +10,12 @@ import click
 
 from catenary_fe.cli.folder import read_record
 from catenary_fe.cli.terminal import print_table, progress_bar
+from catenary_fe.layout import PowerSystem
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import PowerSystem
 
 if TYPE_CHECKING:
-    from catenary_fe.equilibrium import Shape
     from catenary_fe.results import Criterion, Run
+    from catenary_fe.statics import Shape
 
 filter_option = click.option(
     "--filter",
@@ -43,7 +43,7 @@ def evaluated(
 
 def with_elasticity(run: Run, shape: Shape, quiet: bool) -> Run:
     """The run with the elasticity of its evaluated spans."""
-    from catenary_fe.equilibrium.statics import elasticity
+    from catenary_fe.statics.elasticity import elasticity
 
     with progress_bar("elasticity", not quiet) as progress:
         return run.with_elasticity(elasticity(shape, progress=progress))

@@ -26,10 +26,10 @@ from catenary_fe.cli.terminal import (
     warned,
     working,
 )
-from catenary_fe.system import Catenary, load_catenary
-from catenary_fe.system.catenary_rules import check_lengths
-from catenary_fe.system.current_collection import WAVE_SPEED_SHARE
-from catenary_fe.system.plausibility import layout_warnings
+from catenary_fe.layout import Catenary, load_catenary
+from catenary_fe.layout.catenary_rules import check_lengths
+from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
+from catenary_fe.layout.preflight import layout_warnings
 
 if TYPE_CHECKING:
     from catenary_fe.results import Elasticity
@@ -157,7 +157,7 @@ def form(
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height.
     """
-    from catenary_fe.equilibrium import find_form
+    from catenary_fe.statics import find_form
 
     catenary = read_layout(layout, planar)
     if design_lengths:
@@ -211,8 +211,8 @@ def static(
     quiet: bool,
 ) -> None:
     """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
-    from catenary_fe.equilibrium import find_form
-    from catenary_fe.equilibrium.statics import elasticity
+    from catenary_fe.statics import find_form
+    from catenary_fe.statics.elasticity import elasticity
 
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:

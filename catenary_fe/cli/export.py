@@ -9,8 +9,8 @@ import click
 from catenary_fe.cli.criteria import filter_option, kept_evaluation
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import json_option, print_json, quiet_option
+from catenary_fe.layout.arguments import number
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system.arguments import number
 
 
 @click.command(

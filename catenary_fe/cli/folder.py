@@ -10,9 +10,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from catenary_fe.layout import InputError
 from catenary_fe.results.csv_files import write_csv
-from catenary_fe.results.files import ASIDE, STRAY, cannot_be_written, locked, replace_all, written_aside
-from catenary_fe.system import InputError
+from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,7 +72,7 @@ def save_picture(path: Path, ax: Axes) -> None:
     assert figure is not None
     try:
         metadata = {"Software": None} if path.suffix == ".png" else None
-        with written_aside(path) as aside:
+        with atomic_write(path) as aside:
             figure.savefig(aside, dpi=130, metadata=metadata)
     except InputError:
         raise

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from catenary_fe.cli.folder import Folder, read_record
+from catenary_fe.layout import InputError
 from catenary_fe.results import Run
-from catenary_fe.system import InputError
 
 
 @dataclass(frozen=True)

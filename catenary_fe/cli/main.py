@@ -28,7 +28,7 @@ from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
 from catenary_fe.cli.validate import validate
 from catenary_fe.cli.view import view
-from catenary_fe.system import CatenaryError, InputError, Interrupted, counted
+from catenary_fe.layout import CatenaryError, InputError, RunInterrupted, counted
 
 EPILOG = """\b
 Examples:
@@ -107,7 +107,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt) as stopped:
         cause = stopped.__cause__ if isinstance(stopped, click.Abort) else stopped
         click.echo("interrupted", err=True)
-        return cause.exit_code if isinstance(cause, Interrupted) else Interrupted().exit_code
+        return cause.exit_code if isinstance(cause, RunInterrupted) else RunInterrupted().exit_code
     except BrokenPipeError:
         sys.stderr.close()
         return 0
@@ -129,4 +129,4 @@ def entry() -> None:
 def _stop(number: int, _frame: Any) -> None:
     """Leave by the same door as after Ctrl-C: what is half done is put away, what is kept is kept."""
     signal.signal(number, signal.SIG_IGN)  # once is enough
-    raise Interrupted(number)
+    raise RunInterrupted(number)

@@ -21,7 +21,7 @@ from catenary_fe.cli.terminal import (
     warned,
     working,
 )
-from catenary_fe.system.plausibility import layout_warnings
+from catenary_fe.layout.preflight import layout_warnings
 
 DRAWN = 6  # shapes in an output folder
 
@@ -44,9 +44,9 @@ def modes(
     quiet: bool,
 ) -> None:
     """Eigenfrequencies and shapes of a LAYOUT about its static state, droppers taut."""
-    from catenary_fe.analysis.modes import mode_warnings, solve_modes
-    from catenary_fe.equilibrium import find_form
+    from catenary_fe.engines.modal.modes import mode_warnings, solve_modes
     from catenary_fe.fe import MeshSettings
+    from catenary_fe.statics import find_form
 
     catenary = read_layout(layout, planar)
     with warned(layout_warnings(catenary)), output_folder(output) as folder:

@@ -17,8 +17,8 @@ import click
 
 from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, progress_bar, quiet_option
+from catenary_fe.layout import InputError, counted
 from catenary_fe.results.files import write_text
-from catenary_fe.system import InputError, counted
 
 if TYPE_CHECKING:
     from catenary_fe.views.index_page import PageEntry

@@ -10,9 +10,9 @@ import click
 from catenary_fe.cli.criteria import filter_option, kept_evaluation, with_elasticity
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import quiet_option, working
+from catenary_fe.layout import PowerSystem
 from catenary_fe.results.files import write_text
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import PowerSystem
 
 
 @click.command(
@@ -38,7 +38,7 @@ def report(
     quiet: bool,
 ) -> None:
     """Write a report of the run in FOLDER: one HTML page that needs no other file and no network."""
-    from catenary_fe.analysis.repeat import shape_of
+    from catenary_fe.studies.rerun import shape_of
     from catenary_fe.views.report import report_page
 
     run = run_in(folder)

@@ -38,13 +38,13 @@ def rerun(folder: str, output: str | None, as_json: bool, quiet: bool) -> int:
     The inputs come from run.nc, library values filled in, not from the files beside it. Exit code 1 when mean
     or standard deviation of the contact force come out more than 0.1 N away.
     """
-    from catenary_fe.analysis.repeat import repeat
+    from catenary_fe.studies.rerun import rerun
 
     run = run_in(folder)
     warnings = _changes_since(run, Path(folder))
     with output_folder(output) as target:
         with progress_bar(f"run at {3.6 * run.speed:g} km/h again", not quiet) as progress:
-            found = repeat(run, progress)
+            found = rerun(run, progress)
         if target:
             for file in (f for pattern in INPUTS for f in Path(folder).glob(pattern)):
                 shutil.copyfile(file, target.path / file.name)

@@ -33,11 +33,11 @@ from catenary_fe.cli.terminal import (
     warned,
     working,
 )
-from catenary_fe.system import (
+from catenary_fe.layout import (
     AnyPantograph,
     InputError,
-    Interrupted,
     PowerSystem,
+    RunInterrupted,
     SolverError,
     counted,
     layout_warnings,
@@ -45,8 +45,8 @@ from catenary_fe.system import (
 )
 
 if TYPE_CHECKING:
-    from catenary_fe.equilibrium import Shape
     from catenary_fe.results import Criterion, Run
+    from catenary_fe.statics import Shape
 
 EPILOG = """\b
 Examples:
@@ -145,9 +145,10 @@ def run(
     quiet: bool,
 ) -> int:
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
-    from catenary_fe.analysis import simulate
-    from catenary_fe.equilibrium import find_form
-    from catenary_fe.fe import MeshSettings, TimeSettings
+    from catenary_fe.engines.settings import TimeSettings
+    from catenary_fe.fe import MeshSettings
+    from catenary_fe.statics import find_form
+    from catenary_fe.studies import simulate
 
     catenary = read_layout(layout, planar)
     if spans:
@@ -227,7 +228,7 @@ def partial_kept(
     """Where a run is stopped, write what there is of it into a folder inside the output folder."""
     try:
         yield
-    except (SolverError, Interrupted) as error:
+    except (SolverError, RunInterrupted) as error:
         if output and error.partial is not None:
             place, run = str(Path(output) / PARTIAL), error.partial
             try:
@@ -336,7 +337,7 @@ def _megabytes(folder: str) -> float:
 
 
 def print_checks(run: Run) -> None:
-    """The physics guards as a table."""
+    """The quality checks as a table."""
     from catenary_fe.results import checks_in_words
 
     rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]

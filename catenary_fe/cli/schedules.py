@@ -10,7 +10,7 @@ from catenary_fe.results.csv_files import cell, common_name, decimals_of
 
 if TYPE_CHECKING:
     from catenary_fe.cli.folder import Folder
-    from catenary_fe.equilibrium import Shape
+    from catenary_fe.statics import Shape
 
 _DROPPERS = (
     "span", "dropper", "chainage_m", "hangs_on", "contact_wire", "cut_length_mm", "installed_length_m",
@@ -35,7 +35,7 @@ _SHORT = {
 
 def write_schedules(folder: Folder, shape: Shape) -> None:
     """Write the tables of droppers and supports as CSV, all columns on every line."""
-    from catenary_fe.equilibrium import DropperRow
+    from catenary_fe.statics import DropperRow
 
     droppers = [row.as_record() for row in shape.dropper_schedule()]
     folder.table("dropper_schedule.csv", droppers, columns=DropperRow.columns())

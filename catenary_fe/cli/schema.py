@@ -11,6 +11,6 @@ from catenary_fe.cli.terminal import print_json
 @click.argument("kind", type=click.Choice(["layout", "pantograph"]))
 def schema(kind: str) -> None:
     """Print the JSON Schema with which an editor completes and checks layout or pantograph files."""
-    from catenary_fe.system import layout_schema, pantograph_schema
+    from catenary_fe.layout import layout_schema, pantograph_schema
 
     print_json(layout_schema() if kind == "layout" else pantograph_schema())

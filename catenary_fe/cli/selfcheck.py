@@ -14,7 +14,7 @@ from catenary_fe.cli.terminal import json_option, print_json, print_table, progr
 @quiet_option
 def selfcheck(as_json: bool, quiet: bool) -> int:
     """Compute known answers, in half a minute; exit code 1 when this installation misses one."""
-    from catenary_fe.analysis.selfcheck import selfcheck as known_answers
+    from catenary_fe.studies.selfcheck import selfcheck as known_answers
 
     with progress_bar("selfcheck", not quiet) as progress:
         checks = known_answers(progress)

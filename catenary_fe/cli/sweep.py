@@ -26,12 +26,12 @@ from catenary_fe.cli.terminal import (
     say,
     spans_option,
 )
-from catenary_fe.system import Catenary, InputError, PowerSystem, counted
-from catenary_fe.system.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
+from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
+from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
-    from catenary_fe.analysis.sweep_store import Record
+    from catenary_fe.studies.sweep import BrokenCase, SweepCase
+    from catenary_fe.studies.sweep_store import Record
 
 EPILOG = """\b
 Examples:
@@ -110,8 +110,9 @@ def sweep(
     quiet: bool,
 ) -> int:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
-    from catenary_fe.analysis.sweep import LOST, SweepSettings, run_sweep
-    from catenary_fe.fe import MeshSettings, TimeSettings
+    from catenary_fe.engines.settings import TimeSettings
+    from catenary_fe.fe import MeshSettings
+    from catenary_fe.studies.sweep import LOST, SweepSettings, run_sweep
 
     if jobs and scheduler:
         raise click.UsageError("--jobs and --scheduler: the cluster has its own processes; give one of them")
@@ -168,7 +169,7 @@ def sweep(
 
 def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
     """One line on standard error where cases hang with dropper lengths that their layout gives."""
-    from catenary_fe.analysis.sweep import SweepCase
+    from catenary_fe.studies.sweep import SweepCase
 
     given = sum(isinstance(case, SweepCase) and case.catenary.gives_dropper_lengths for case in cases)
     if given:
@@ -239,7 +240,7 @@ def _cases(
     layout: str, axes: dict[str, list[Any]], positions: tuple[float, ...], spans: list[int] | None
 ) -> list[SweepCase | BrokenCase]:
     """All combinations. Raises the first one's InputError if none of them can be run."""
-    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
+    from catenary_fe.studies.sweep import BrokenCase, SweepCase
 
     variable = Variable(layout)
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from catenary_fe.cli.terminal import say
-from catenary_fe.system import PowerSystem
+from catenary_fe.layout import PowerSystem
 
 if TYPE_CHECKING:
-    from catenary_fe.analysis.sweep import BrokenCase, SweepCase
-    from catenary_fe.analysis.sweep_store import Record
     from catenary_fe.results import Criterion, ForceStatistics
+    from catenary_fe.studies.sweep import BrokenCase, SweepCase
+    from catenary_fe.studies.sweep_store import Record
 
 _MOST = 5  # warnings by themselves
 
@@ -51,9 +51,9 @@ class Verdict:
 
 def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:
     """The verdict on a case, by what is kept of its run."""
-    from catenary_fe.analysis.sweep import BrokenCase
     from catenary_fe.results import ForceStatistics, excess, governing
     from catenary_fe.results.check import FAILED
+    from catenary_fe.studies.sweep import BrokenCase
 
     if isinstance(case, BrokenCase) or "error" in record:
         return Verdict(record["values"], error=record["error"])

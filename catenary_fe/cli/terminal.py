@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from catenary_fe.cli.surroundings import writes_unicode
-from catenary_fe.system import Catenary, CatenaryError, load_catenary
-from catenary_fe.system.files import MOST_SPANS
+from catenary_fe.layout import Catenary, CatenaryError, load_catenary
+from catenary_fe.layout.files import MOST_SPANS
 
 _RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
 
 if TYPE_CHECKING:
-    from catenary_fe.equilibrium import Shape
+    from catenary_fe.statics import Shape
 
 layout_argument = click.argument("layout", type=click.Path())
 planar_option = click.option(

@@ -12,7 +12,7 @@ import click
 
 from catenary_fe.cli.folder import writable_folder
 from catenary_fe.cli.terminal import json_option, print_json, print_table, progress_bar, quiet_option
-from catenary_fe.system import InputError
+from catenary_fe.layout import InputError
 
 _COLUMNS = ("case", "quantity", "computed", "reference", "error", "tolerance", "passed")
 

@@ -9,10 +9,10 @@ import click
 
 from catenary_fe.cli.folder import run_in
 from catenary_fe.cli.terminal import quiet_option, say_lengths, shown_spans_option, working
-from catenary_fe.system import InputError, load_catenary
+from catenary_fe.layout import InputError, load_catenary
 
 if TYPE_CHECKING:
-    from catenary_fe.equilibrium import Shape
+    from catenary_fe.statics import Shape
 
 
 @click.command(
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @quiet_option
 def view(layout_or_folder: str, spans: list[int] | None, output: str | None, quiet: bool) -> None:
     """Open the model of a LAYOUT, or of a run's FOLDER, in Exudyn's viewer; needs a screen."""
-    from catenary_fe.fe.viewer import require_screen, view_model
+    from catenary_fe.engines.exudyn.viewer import require_screen, view_model
 
     require_screen()
     with working("form finding", not quiet):
@@ -49,8 +49,8 @@ def view(layout_or_folder: str, spans: list[int] | None, output: str | None, qui
 
 
 def _shape(layout_or_folder: str) -> Shape:
-    from catenary_fe.analysis.repeat import shape_of
-    from catenary_fe.equilibrium import find_form
+    from catenary_fe.statics import find_form
+    from catenary_fe.studies.rerun import shape_of
 
     path = Path(layout_or_folder)
     if path.is_dir() or path.suffix == ".nc":

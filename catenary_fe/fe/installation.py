@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.system import Catenary, Wire
+from catenary_fe.layout import Catenary, Wire
 
 Floats = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.system import Catenary, InputError
-from catenary_fe.system.arguments import number
-from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.layout import Catenary, InputError
+from catenary_fe.layout.arguments import number
+from catenary_fe.layout.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.contact import MovingContact
-from catenary_fe.fe.drive import raise_heads
+from catenary_fe.engines.exudyn.contact import MovingContact
+from catenary_fe.engines.exudyn.model import Model, build_model
+from catenary_fe.engines.exudyn.pantograph import PantographItems, add_pantographs
+from catenary_fe.engines.exudyn.run import raise_heads
+from catenary_fe.engines.exudyn.solver import release, solve_static
 from catenary_fe.fe.installation import Installation
-from catenary_fe.fe.linear_model import ContactLine, contact_lines
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.model import Model, build_model
-from catenary_fe.fe.pantograph import PantographItems, add_pantographs
-from catenary_fe.fe.solver import release, solve_static
+from catenary_fe.fe.reduction import ContactLine, contact_lines
 from catenary_fe.fe.system import System, assemble
-from catenary_fe.system import AnyPantograph, Catenary
+from catenary_fe.layout import AnyPantograph, Catenary
 
 Floats = NDArray[np.float64]
 

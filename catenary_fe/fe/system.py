@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.assembly import scattered
 from catenary_fe.fe.cable import Cables, inner_forces, mass_blocks, strain_energy, tangent_blocks
-from catenary_fe.fe.held import Held
 from catenary_fe.fe.installation import (
     Installation,
     curve_pulls,
@@ -27,8 +26,9 @@ from catenary_fe.fe.installation import (
     point_masses,
 )
 from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.restraints import Held
 from catenary_fe.fe.spring import FIXED, Springs
-from catenary_fe.system import GRAVITY, Catenary
+from catenary_fe.layout import GRAVITY, Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

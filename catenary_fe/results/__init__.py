@@ -25,9 +25,9 @@ from catenary_fe.results.criteria import (
 )
 from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.export import history_tables, write_tables
-from catenary_fe.results.guards import run_checks
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import ModeKind, Modes, WireShapes
+from catenary_fe.results.quality import run_checks
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing

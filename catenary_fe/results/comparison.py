@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from catenary_fe.layout import InputError
 from catenary_fe.results.check import FAILED
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError
 
 QUANTITIES = {
     "mean_N": "mean force (N)",

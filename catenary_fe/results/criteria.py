@@ -8,12 +8,9 @@ from math import inf
 from operator import ge, gt, le
 from typing import Any, Literal, get_args
 
-from catenary_fe.results.run import Run
-from catenary_fe.results.signal import FilterKind
-from catenary_fe.results.statistics import ForceStatistics
-from catenary_fe.system import AnyPantograph, Catenary, InputError
-from catenary_fe.system.arguments import checked, one_of
-from catenary_fe.system.current_collection import (
+from catenary_fe.layout import AnyPantograph, Catenary, InputError
+from catenary_fe.layout.arguments import checked, one_of
+from catenary_fe.layout.current_collection import (
     DEVIATION_SHARE,
     MEAN_FORCE_TOLERANCE,
     UPLIFT_FACTOR,
@@ -24,7 +21,10 @@ from catenary_fe.system.current_collection import (
     force_limit,
     mean_force_limit,
 )
-from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.results.run import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.results.statistics import ForceStatistics
 
 Relation = Literal["at most", "at least", "above"]
 _HOLDS: dict[Relation, Callable[[float, float], bool]] = {"at most": le, "at least": ge, "above": gt}

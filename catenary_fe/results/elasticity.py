@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.system.frozen import changed_by_copy
+from catenary_fe.layout.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

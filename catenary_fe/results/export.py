@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.layout import InputError
 from catenary_fe.results.csv_files import OF_HISTORIES, write_csv
-from catenary_fe.results.files import cannot_be_written, written_aside
+from catenary_fe.results.files import atomic_write, cannot_be_written
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError
 
 Floats = NDArray[np.float64]
 Table = dict[str, Floats]
@@ -71,7 +71,7 @@ def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> l
         folder.mkdir(parents=True, exist_ok=True)
         for name, table in tables.items():
             path = folder / f"{name}.csv"
-            with written_aside(path) as aside:
+            with atomic_write(path) as aside:
                 rows = np.column_stack(list(table.values()))[::every].tolist()
                 write_csv(aside, list(table), rows, OF_HISTORIES)
             written.append(path)

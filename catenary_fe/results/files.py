@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from errno import EACCES, EAGAIN, EDEADLK, EDQUOT, EFBIG, EISDIR, ENOSPC
 from pathlib import Path
 
-from catenary_fe.system import InputError
+from catenary_fe.layout import InputError
 
 ASIDE = ".part-"  # begins the names of what is not whole yet
 LOCK = ".lock"
@@ -23,7 +23,7 @@ _BEHIND = 1 << 30  # place of the locked byte, beyond the text: Windows lets nob
 
 
 @contextmanager
-def written_aside(path: str | Path) -> Iterator[Path]:
+def atomic_write(path: str | Path) -> Iterator[Path]:
     """A name beside ``path`` to write a file under; the file is moved to ``path`` when it is whole.
 
     Where it does not get that far, what stood at ``path`` before stays. Raises InputError for a path that
@@ -46,7 +46,7 @@ def written_aside(path: str | Path) -> Iterator[Path]:
 
 def write_text(path: str | Path, text: str) -> None:
     """Write a whole file or none. Raises InputError for a path that cannot be written."""
-    with written_aside(path) as aside:
+    with atomic_write(path) as aside:
         aside.write_text(text, encoding="utf-8", errors=STRAY)
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.layout import InputError
+from catenary_fe.layout.arguments import checked, numbers, one_of, whole
+from catenary_fe.layout.frozen import changed_by_copy
 from catenary_fe.results.modes import Modes
-from catenary_fe.system import InputError
-from catenary_fe.system.arguments import checked, numbers, one_of, whole
-from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.system import Catenary, InputError, counted
-from catenary_fe.system.arguments import number, on_the_wire
-from catenary_fe.system.frozen import changed_by_copy
-from catenary_fe.system.parameters import shorten
+from catenary_fe.layout import Catenary, InputError, counted
+from catenary_fe.layout.arguments import number, on_the_wire
+from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import shorten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

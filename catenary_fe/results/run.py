@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.layout import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
+from catenary_fe.layout.arguments import checked, span_numbers, whole
+from catenary_fe.layout.frozen import changed_by_copy
 from catenary_fe.results.check import FAILED, Check
 from catenary_fe.results.checksum import ATTRIBUTE, checksum
 from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.files import written_aside
-from catenary_fe.results.guards import run_checks
+from catenary_fe.results.files import atomic_write
 from catenary_fe.results.partial import Partial
+from catenary_fe.results.quality import run_checks
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
 from catenary_fe.results.wires import WireHistory, wire_histories
-from catenary_fe.system import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
-from catenary_fe.system.arguments import checked, span_numbers, whole
-from catenary_fe.system.frozen import changed_by_copy
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,12 +92,12 @@ class Run:
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
-        """The physics guards, each with value and bound. See :mod:`catenary_fe.results.guards`."""
+        """The quality checks, each with value and bound. See :mod:`catenary_fe.results.quality`."""
         return run_checks(self)
 
     @property
     def failed_checks(self) -> tuple[str, ...]:
-        """Names of the physics guards that the run fails."""
+        """Names of the quality checks that the run fails."""
         return tuple(check.name for check in self.checks if not check.passed)
 
     @property
@@ -293,7 +293,7 @@ class Run:
     def save(self, path: str | Path) -> Path:
         """Write all data as netCDF (classic format: any program reads it). Raises InputError if it cannot."""
         sealed = self.data.drop_encoding().assign_attrs({ATTRIBUTE: checksum(self.data)})
-        with written_aside(path) as aside:
+        with atomic_write(path) as aside:
             sealed.to_netcdf(aside, engine="scipy", format="NETCDF3_64BIT")
         return Path(path)
 

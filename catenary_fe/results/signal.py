@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.system.arguments import one_of
+from catenary_fe.layout.arguments import one_of
 
 Floats = NDArray[np.float64]
 FilterKind = Literal["causal", "zero-phase"]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.layout.frozen import changed_by_copy
 from catenary_fe.results.signal import FilterKind, band_pass, low_pass
-from catenary_fe.system.frozen import changed_by_copy
 
 Floats = NDArray[np.float64]
 LONG_LOSS = 5e-3  # [s] shorter losses make no arc that EN 50317 counts (recalled)

@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import NDArray
 
+from catenary_fe.layout import InputError
+from catenary_fe.layout.arguments import checked, number, span_numbers, whole
 from catenary_fe.results import Run
-from catenary_fe.results.files import written_aside
-from catenary_fe.system import InputError
-from catenary_fe.system.arguments import checked, number, span_numbers, whole
+from catenary_fe.results.files import atomic_write
 from catenary_fe.views.scene import Scene, scene
 from catenary_fe.views.style import (
     DROPPER,
@@ -70,7 +70,7 @@ def film(
     frames = np.clip(np.round((wanted - stored[0]) / (stored[1] - stored[0])), 0, stored.size - 1)
     pictures = view.pictures(scene(run, frames.astype(np.int64)), progress)
     write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
-    with written_aside(path) as aside:
+    with atomic_write(path) as aside:
         write(aside, pictures, frames_per_second)
     return path
 
@@ -195,7 +195,7 @@ def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
     from PIL import Image
 
     try:
-        with written_aside(path) as aside:
+        with atomic_write(path) as aside:
             Image.fromarray(pixels).save(aside)
     except InputError:
         raise

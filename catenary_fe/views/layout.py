@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.equilibrium import Shape
-from catenary_fe.system import Catenary
-from catenary_fe.system.arguments import checked
+from catenary_fe.layout import Catenary
+from catenary_fe.layout.arguments import checked
+from catenary_fe.statics import Shape
 from catenary_fe.views.lines import Line, draw_lines, hanging_lines, sketched_lines, upper_wires
 from catenary_fe.views.stretch import Stretch, draw_line, evaluated_pair, mark_evaluated
 from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row, styled

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from catenary_fe.equilibrium import Shape
-from catenary_fe.system import GRAVITY, Catenary
+from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.statics import Shape
 from catenary_fe.views.stretch import Stretch
 from catenary_fe.views.style import wire_colour
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from catenary_fe.layout import counted
+from catenary_fe.layout.arguments import checked
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
-from catenary_fe.system import counted
-from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import (
     CONTACT,
     DROPPER,

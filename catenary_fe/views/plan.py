@@ -8,9 +8,9 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.equilibrium import Shape
-from catenary_fe.system import AnyPantograph, Panhead, Pantograph, arguments
-from catenary_fe.system.arguments import checked
+from catenary_fe.layout import AnyPantograph, Panhead, Pantograph, arguments
+from catenary_fe.layout.arguments import checked
+from catenary_fe.statics import Shape
 from catenary_fe.views.lines import draw_lines, hanging_lines
 from catenary_fe.views.stretch import Stretch, draw_line, mark_evaluated
 from catenary_fe.views.style import (

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from catenary_fe.layout.arguments import checked
 from catenary_fe.results import ForceStatistics, Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system.arguments import checked
 from catenary_fe.views.style import (
     DROPPER,
     OTHERS,

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from catenary_fe.layout import InputError
+from catenary_fe.layout.arguments import checked, one_of, span_numbers
 from catenary_fe.results import Run
-from catenary_fe.system import InputError
-from catenary_fe.system.arguments import checked, one_of, span_numbers
 from catenary_fe.views.space_time import plot_space_time
 from catenary_fe.views.style import note_failed, styled
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from catenary_fe.layout.arguments import checked, number
 from catenary_fe.results import Run, spectrum
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.system.arguments import checked, number
 from catenary_fe.views.style import PANTOGRAPHS, SUPPORT, finish, headroom, new_axes, note_failed, styled
 
 

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.layout.arguments import checked
 from catenary_fe.results import Elasticity
-from catenary_fe.system.arguments import checked
+from catenary_fe.statics import Shape
 from catenary_fe.views.stretch import Stretch, evaluated_pair, mark_detail, mark_evaluated, stretch
 from catenary_fe.views.style import (
     CONTACT,

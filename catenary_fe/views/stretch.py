@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from catenary_fe.system import Catenary
-from catenary_fe.system.arguments import span_numbers
+from catenary_fe.layout import Catenary
+from catenary_fe.layout.arguments import span_numbers
 from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, runs
 
 Floats = NDArray[np.float64]

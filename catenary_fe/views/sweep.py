@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.system import target_mean_force
-from catenary_fe.system.current_collection import DEVIATION_SHARE
-from catenary_fe.system.variation import unit_of
+from catenary_fe.layout import target_mean_force
+from catenary_fe.layout.current_collection import DEVIATION_SHARE
+from catenary_fe.layout.variation import unit_of
 from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed, styled
 
 Rows = Sequence[Mapping[str, Any]]

@@ -17,11 +17,11 @@ import numba
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.analysis.linearised.kernel import take_one
-from catenary_fe.analysis.nonlinear.cables import take_cables
-from catenary_fe.analysis.nonlinear.forces import give_at, solve
-from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
-from catenary_fe.fe.drive import Trip, drive
+from catenary_fe.engines.exudyn.run import Trip, drive
+from catenary_fe.engines.kernels import take_one
+from catenary_fe.engines.nonlinear.cables import take_cables
+from catenary_fe.engines.nonlinear.forces import local_compliance, solve
+from catenary_fe.engines.nonlinear.run import NonlinearCatenary
 from catenary_fe.fe.nonlinear_model import contact_start
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
@@ -78,7 +78,7 @@ def _parts(line: NonlinearCatenary) -> list[tuple[str, float]]:
         "iteration: cable forces": (take_cables, (2, system.elements, total, inner)),
         "iteration: products with mass and damping": (take_one, (system.mass, u, x)),
         "iteration: solution": (solve, (factor, x)),
-        "iteration: window of one contact": (give_at, (factor, at, weights, column)),
+        "iteration: window of one contact": (local_compliance, (factor, at, weights, column)),
     }
     found = []
     for name, (function, arguments) in jobs.items():

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
 from catenary_fe.views.style import PANTOGRAPHS, finish
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"

@@ -16,14 +16,14 @@ from pathlib import Path
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.analysis.linearised.arrays import LANES
-from catenary_fe.analysis.linearised.run import Case, LinearisedCatenary
-from catenary_fe.analysis.nonlinear.run import NonlinearCatenary
-from catenary_fe.fe.linear_model import linear_model
+from catenary_fe.engines.arrays import SLOTS
+from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+from catenary_fe.fe.reduction import linear_model
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
 SPEED, START, STEP = 300 / 3.6, 10.0, 1e-3
-CASES_A_CORE = 2 * LANES
+CASES_A_CORE = 2 * SLOTS
 
 
 def nonlinear(line: NonlinearCatenary, seconds: float) -> float:
@@ -34,7 +34,7 @@ def nonlinear(line: NonlinearCatenary, seconds: float) -> float:
 
 
 def exudyn(shape: cf.Shape, seconds: float) -> float:
-    from catenary_fe.fe.drive import Trip, drive
+    from catenary_fe.engines.exudyn.run import Trip, drive
 
     trip = Trip(SPEED, np.array([START]), round(seconds / STEP), cf.TimeSettings())
     head = cf.library.pantograph("EN 50318:2002")
@@ -122,7 +122,7 @@ def main() -> None:
         "nonlinear run by Exudyn's solver": lambda: exudyn(shape, options.seconds),
         "plain scipy, linear, droppers taut": lambda: plain_scipy(shape, options.seconds),
         "linearised run": lambda: linearised(line),
-        f"linearised, {LANES} lanes on one core": lambda: linearised(line, CASES_A_CORE),
+        f"linearised, {SLOTS} slots on one core": lambda: linearised(line, CASES_A_CORE),
     }
     best = dict.fromkeys(rows, (0.0, 0.0))
     for _ in range(options.repeat):

@@ -126,7 +126,7 @@ def test_criteria_that_are_kept(capsys, layout, tmp_path, monkeypatch):
     static = json.loads(call(capsys, "static", layout, "--json", "--quiet")[1])
     found = summary["elasticity_non_uniformity_percent"]
     assert summary["criteria"][-1]["value"] == found == pytest.approx(100 * static["non_uniformity"])
-    monkeypatch.setattr("catenary_fe.analysis.elasticity", None)  # what was computed is not computed again
+    monkeypatch.setattr("catenary_fe.studies.elasticity", None)  # what was computed is not computed again
     shown = "catenary_fe.views.report.report_page"
     monkeypatch.setattr(shown, lambda run, *_, **__: repr(100 * run.elasticity.non_uniformity))
     assert call(capsys, "report", out_dir)[0] == 0
@@ -134,7 +134,7 @@ def test_criteria_that_are_kept(capsys, layout, tmp_path, monkeypatch):
 
 
 def test_a_missed_criterion_is_exit_code_1(capsys, layout, tmp_path, monkeypatch):
-    monkeypatch.setattr("catenary_fe.analysis.elasticity", None)  # no limit judges it
+    monkeypatch.setattr("catenary_fe.studies.elasticity", None)  # no limit judges it
     text = Path(layout).read_text().replace("stiffness = 300.0", "stiffness = 300.0\nuplift_room = 0.3")
     Path(layout).write_text(text)
     out_dir = tmp_path / "out"

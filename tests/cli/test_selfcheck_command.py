@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from catenary_fe.analysis import selfcheck
 from catenary_fe.cli.main import main
+from catenary_fe.studies import selfcheck
 
 KEYS = {"name", "computed", "reference", "unit", "tolerance", "source", "error", "passed"}
 

@@ -15,7 +15,7 @@ from catenary_fe.cli import surroundings
 from catenary_fe.cli.folder import output_folder, save_picture
 from catenary_fe.cli.inputs import InputFiles
 from catenary_fe.cli.terminal import print_json
-from catenary_fe.system import InputError
+from catenary_fe.layout import InputError
 from catenary_fe.views import plot_layout
 
 CASES = Path(__file__).parents[1] / "cases"

@@ -48,7 +48,7 @@ def call(capsys):
 
 @pytest.fixture
 def start():
-    """Start the command line as a process that leads a group of its own."""
+    """InitialState the command line as a process that leads a group of its own."""
     started = []
 
     def begun(*arguments):

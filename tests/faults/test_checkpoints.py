@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.analysis import checkpoint
+from catenary_fe.studies import checkpoint
 
 pytest.importorskip("numba")
 
 RUN = """
 import sys, time, catenary_fe as cf
-from catenary_fe.analysis import checkpoint
+from catenary_fe.studies import checkpoint
 checkpoint.INTERVAL = 0.0
 line = cf.load_catenary({layout!r})
 line = line.replace(spans=line.spans[:3], supports=line.supports[:4], evaluated_spans=(2,))
@@ -77,7 +77,7 @@ def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(shape, line, pan
         if share > 0.2:
             raise KeyboardInterrupt
 
-    with pytest.raises(cf.Interrupted):
+    with pytest.raises(cf.RunInterrupted):
         cf.simulate(shape, [pantograph], speed=80.0, checkpoint=file, progress=stop)
     with pytest.raises(cf.InputError, match=r"checkpoint of another run \(other speed\): remove it"):
         cf.simulate(shape, [pantograph], speed=70.0, checkpoint=file)

@@ -125,7 +125,7 @@ def test_a_file_that_was_changed_on_purpose(folder):
 def test_a_write_that_fails_leaves_what_was_there(tmp_path):
     path = tmp_path / "a.txt"
     files.write_text(path, "whole")
-    with pytest.raises(KeyboardInterrupt), files.written_aside(path) as aside:
+    with pytest.raises(KeyboardInterrupt), files.atomic_write(path) as aside:
         aside.write_text("ha")
         raise KeyboardInterrupt
     with pytest.raises(cf.InputError, match=r"b\.txt: cannot be written: No such file"):
@@ -135,7 +135,7 @@ def test_a_write_that_fails_leaves_what_was_there(tmp_path):
 
 
 def test_records_of_a_sweep_are_read_only_whole(tmp_path):
-    from catenary_fe.analysis.sweep_store import open_store
+    from catenary_fe.studies.sweep_store import open_store
 
     with open_store(tmp_path) as store:
         store.write("k", {"summary": {"mean_N": 117.25, "none": None}})

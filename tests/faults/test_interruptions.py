@@ -8,8 +8,8 @@ import subprocess
 import pytest
 from faults import PANTOGRAPH, content, wait_until
 
-from catenary_fe.analysis import sweep as sweeping
-from catenary_fe.analysis.sweep import SweepCase, SweepSettings, run_sweep
+from catenary_fe.studies import sweep as sweeping
+from catenary_fe.studies.sweep import SweepCase, SweepSettings, run_sweep
 
 SWEEP = [
     "--pantograph",

@@ -27,7 +27,7 @@ def interrupted(shape, pantographs, share, **settings):
             raise KeyboardInterrupt
 
     settings = {"method": "exudyn", "time": COARSE} | settings
-    with pytest.raises(cf.Interrupted) as caught:
+    with pytest.raises(cf.RunInterrupted) as caught:
         cf.simulate(shape, pantographs, speed=200 / 3.6, progress=stop, **settings)
     return caught.value
 
@@ -39,7 +39,7 @@ def whole(shape, pantograph):
 
 @pytest.fixture(scope="module")
 def early(shape, pantograph):
-    """Stopped inside the evaluated span."""
+    """RunStopped inside the evaluated span."""
     return interrupted(shape, [pantograph], 0.5, store_wire=0.02).partial
 
 
@@ -117,8 +117,8 @@ def test_a_compiled_run_keeps_its_finished_blocks(shape, pantograph):
 
 
 def test_an_interrupt_between_readings_keeps_them_together(shape, pantograph, monkeypatch):
-    from catenary_fe.analysis.nonlinear.energy import EnergyRecord
-    from catenary_fe.fe.tension import TensionRecord
+    from catenary_fe.engines.nonlinear.energy import EnergyRecord
+    from catenary_fe.engines.tension import TensionRecord
 
     for record in (EnergyRecord, TensionRecord):
         read, count = record.read, iter(range(10**6))
@@ -130,7 +130,7 @@ def test_an_interrupt_between_readings_keeps_them_together(shape, pantograph, mo
 
         with monkeypatch.context() as patched:
             patched.setattr(record, "read", stopping)
-            with pytest.raises(cf.Interrupted) as caught:
+            with pytest.raises(cf.RunInterrupted) as caught:
                 cf.simulate(shape, [pantograph], speed=200 / 3.6)
         data = caught.value.partial.data
         assert data.sizes["energy_time"] == data.sizes["tension_time"] == 20

@@ -8,7 +8,7 @@ import pytest
 from faults import LINEAR, OPTIONS
 
 import catenary_fe as cf
-from catenary_fe.analysis import resources
+from catenary_fe.studies import resources
 
 SCRIPT = """
 import pathlib, sys
@@ -23,7 +23,7 @@ print(code, 1024 * int(peak))
 def predicted(layout, options):
     """What a run of the command line takes, from the interface's own prediction."""
     found = []
-    module = importlib.import_module("catenary_fe.analysis.simulate")
+    module = importlib.import_module("catenary_fe.studies.simulate")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "check_memory", lambda demand, _: found.append(demand) or stop())
         with pytest.raises(KeyboardInterrupt):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.equilibrium import loaded
-from catenary_fe.equilibrium.loaded import LoadedLine
-from catenary_fe.fe.faults import place_of_heads
+from catenary_fe.engines.faults import place_of_heads
+from catenary_fe.statics import loaded
+from catenary_fe.statics.loaded import LoadedLine
 
 
 @pytest.fixture(scope="module")

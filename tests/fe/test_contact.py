@@ -9,7 +9,7 @@ import catenary_fe as cf
 
 exu = pytest.importorskip("exudyn")
 
-from catenary_fe.fe.contact import MovingContact, locate  # noqa: E402
+from catenary_fe.engines.exudyn.contact import MovingContact, locate  # noqa: E402
 
 
 class Told:

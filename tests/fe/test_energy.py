@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.fe.drive import Trip, drive
+from catenary_fe.engines.exudyn.run import Trip, drive
 
 
 @pytest.fixture(scope="module")
@@ -18,10 +18,10 @@ def balance(shape, pantograph, step, radius):
     """Largest difference between work put in and energy gained, and the work."""
     time = cf.TimeSettings(step=step, tolerance=1e-6, spectral_radius=radius)
     trip = Trip(300 / 3.6, np.array([10.0]), round(2 / step), time, energy_interval=0.01)
-    journey = drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
-    driven = journey.driven_work[:: round(0.01 / step)]
-    gained = journey.energy - journey.energy[0]
-    base = journey.mass_heights[0][-1]
+    history = drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
+    driven = history.driven_work[:: round(0.01 / step)]
+    gained = history.energy - history.energy[0]
+    base = history.mass_heights[0][-1]
     uplift = 120 * (base - base[0])  # counted as stored by the meter, as work by the field
     return np.abs(driven - gained).max(), np.abs(driven).max() + np.abs(uplift).max()
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
+from catenary_fe.engines.modal.eigen import linear_system
 from catenary_fe.fe.cable import hermite
-from catenary_fe.fe.linear_model import linear_model
-from catenary_fe.fe.modal import linear_system
 from catenary_fe.fe.nonlinear_model import nonlinear_model
+from catenary_fe.fe.reduction import linear_model
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from catenary_fe.fe.linearise import mass_matrix, stiffness_matrix
-from catenary_fe.fe.model import build_model
+from catenary_fe.engines.exudyn.linearise import mass_matrix, stiffness_matrix
+from catenary_fe.engines.exudyn.model import build_model
 
 UP, COORDINATES = 1, 4  # of a node in the plane
 
@@ -52,10 +52,10 @@ def test_element_matrices_are_those_of_exudyn(axes):
     """At a state that is bent and stretched far more than a wire ever is."""
     import exudyn as exu
 
-    from catenary_fe.fe.linearise import mass_blocks, stiffness_blocks
-    from catenary_fe.fe.solver import new_system, release
-    from catenary_fe.fe.wire import WireLine, add_wire
-    from catenary_fe.system import Wire
+    from catenary_fe.engines.exudyn.linearise import mass_blocks, stiffness_blocks
+    from catenary_fe.engines.exudyn.solver import new_system, release
+    from catenary_fe.engines.exudyn.wire import WireLine, add_wire
+    from catenary_fe.layout import Wire
 
     wire = Wire(mass_per_length=1.35, tension=20e3, axial_stiffness=17e6, bending_stiffness=195.0)
     points = np.zeros((4, axes))

@@ -7,8 +7,8 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
-from catenary_fe.fe.model import build_model
-from catenary_fe.fe.solver import release, solve_static
+from catenary_fe.engines.exudyn.model import build_model
+from catenary_fe.engines.exudyn.solver import release, solve_static
 from catenary_fe.fe.system import System, assemble
 
 LAYOUTS = sorted((Path(__file__).parents[2] / "models" / "layouts").glob("*.toml"))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from catenary_fe.fe.model import build_model
-from catenary_fe.fe.solver import release, solve_static
-from catenary_fe.fe.tension import TensionGauge
+from catenary_fe.engines.exudyn.model import build_model
+from catenary_fe.engines.exudyn.solver import release, solve_static
+from catenary_fe.engines.tension import TensionGauge
 
 
 def gauge_of(model):

@@ -7,9 +7,9 @@ import pytest
 from hostile import call, document, layouts
 
 import catenary_fe as cf
+from catenary_fe.engines.settings import SHORTEST_STEP
 from catenary_fe.fe import MeshSettings
 from catenary_fe.fe.mesh import make_mesh
-from catenary_fe.fe.solver_settings import SHORTEST_STEP
 
 
 def fault(load, path):

@@ -29,8 +29,8 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 _STATICS = [
-    "tests/equilibrium/test_form_checks.py",
-    "tests/equilibrium/test_form.py",
+    "tests/statics/test_form_checks.py",
+    "tests/statics/test_form.py",
     "tests/space/test_bad_designs.py",
     "tests/space/test_statics_in_space.py",
     "tests/space/test_stitch_and_twin_wires.py",
@@ -39,7 +39,7 @@ _SHAPES = ["tests/results/test_shapes.py"]
 _RUNS = ["tests/results/test_run_values.py", *_SHAPES]
 _FILES = ["tests/results/test_stored_files.py"]
 _TABLES = ["tests/results/test_comparison.py"]
-_CONTACT = "tests/analysis/test_contact_forces.py"
+_CONTACT = "tests/engines/test_contact_forces.py"
 TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.statistics": ["tests/results/test_statistics.py", *_RUNS],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
@@ -54,21 +54,21 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.files": _FILES,
     "catenary_fe.results.checksum": _FILES,
     "catenary_fe.results.partial": _FILES,
-    "catenary_fe.equilibrium.form": _STATICS,
-    "catenary_fe.equilibrium.cut_wires": _STATICS,
-    "catenary_fe.equilibrium.form_checks": _STATICS,
-    "catenary_fe.fe.contact": [
+    "catenary_fe.statics.form_finding": _STATICS,
+    "catenary_fe.statics.cut_wires": _STATICS,
+    "catenary_fe.statics.rules": _STATICS,
+    "catenary_fe.engines.exudyn.contact": [
         "tests/fe/test_contact.py",
         _CONTACT,
-        "tests/analysis/test_elastic_pantograph.py",
+        "tests/engines/test_elastic_pantograph.py",
     ],
-    "catenary_fe.results.guards": [
+    "catenary_fe.results.quality": [
         "tests/results/test_pantograph_balances.py",
         "tests/results/test_guard_values.py",
     ],
     "catenary_fe.results.check": ["tests/results/test_guard_values.py"],
-    "catenary_fe.analysis.linearised.doubts": ["tests/analysis/test_doubts.py"],
-    "catenary_fe.analysis.linearised.forces": ["tests/analysis/test_forces_of_a_step.py"]
+    "catenary_fe.engines.linearised.doubts": ["tests/engines/test_doubts.py"],
+    "catenary_fe.engines.contact_solver": ["tests/engines/test_forces_of_a_step.py"]
     + [
         f"{_CONTACT}::{name}"
         for name in (
@@ -80,7 +80,7 @@ TARGETS = {  # module: tests that are quick and touch it
             "test_linearised_steps[slack-3.0-4.0]",
         )
     ],
-    "catenary_fe.analysis.nonlinear.forces": ["tests/analysis/test_window_of_a_force.py"]
+    "catenary_fe.engines.nonlinear.forces": ["tests/engines/test_window_of_a_force.py"]
     + [
         f"{_CONTACT}::{name}"
         for name in (

@@ -1,4 +1,4 @@
-"""The guards of a pantograph find the force or energy left out of motions of second order in time."""
+"""The quality checks of a pantograph find the force or energy left out of motions of second order in time."""
 
 import json
 

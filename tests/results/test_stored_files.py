@@ -20,7 +20,7 @@ from catenary_fe.results.partial import Partial
 
 def test_a_file_is_not_there_before_it_is_whole(tmp_path):
     path = tmp_path / "a.txt"
-    with files.written_aside(str(path)) as aside:
+    with files.atomic_write(str(path)) as aside:
         aside.write_text("whole")
         assert aside.parent == tmp_path
         assert aside.name.startswith(files.ASIDE)

@@ -6,7 +6,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.run import write_run
-from catenary_fe.fe.drive import Trip, drive
+from catenary_fe.engines.exudyn.run import Trip, drive
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,10 @@ def test_a_rolling_head_tilts_under_an_eccentric_wire(staggered_shape, chain):
 
 def test_two_strips_share_the_force(staggered_shape, chain):
     head = cf.Panhead(strips=2, strip_distance=0.5)
-    one, two = settled(staggered_shape, chain), settled(staggered_shape, chain.replace(head=head))
+    one, two = (
+        settled(staggered_shape, chain),
+        settled(staggered_shape, chain.replace(head=head)),
+    )
     assert two.mass_heights[0].shape[0] == one.mass_heights[0].shape[0] + 1
     assert two.contact_force[0] == pytest.approx(one.contact_force[0], rel=0.01)
     # each strip's spring carries its half: k/2 under F/2 is as short as k under F
@@ -80,10 +83,10 @@ def test_energy_of_an_undamped_run_in_space(staggered, chain):
     shape = cf.find_form(staggered.replace(damping=cf.RayleighDamping(), supports=supports))
     time = cf.TimeSettings(step=1e-3, tolerance=1e-6, spectral_radius=1.0)
     trip = Trip(250 / 3.6, np.array([15.0]), 1500, time, energy_interval=0.01)
-    journey = drive(shape.catenary, shape.mesh, shape.installation, [(free, 140.0)], trip)
-    gained = journey.energy - journey.energy[0]
-    driven = journey.driven_work[::10]
-    base = journey.mass_heights[0][-1]
+    history = drive(shape.catenary, shape.mesh, shape.installation, [(free, 140.0)], trip)
+    gained = history.energy - history.energy[0]
+    driven = history.driven_work[::10]
+    base = history.mass_heights[0][-1]
     work = np.abs(driven).max() + np.abs(140 * (base - base[0])).max()
     assert work > 10
     assert np.abs(driven - gained).max() < 0.01 * work

@@ -90,7 +90,7 @@ def test_import_is_light_and_stands_alone():
     code = (
         "import sys; import catenary_fe.theory; "
         "print([m for m in ('scipy.integrate', 'scipy.sparse', 'matplotlib', 'exudyn', 'pydantic', "
-        "'catenary_fe.system', 'catenary_fe.fe') if m in sys.modules])"
+        "'catenary_fe.layout', 'catenary_fe.fe') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import validation
-from catenary_fe.system import InputError
+from catenary_fe.layout import InputError
 from validation import CASES, Checks, run_cases, run_twins, write_report
 from validation.check import compare, compare_curves
 from validation.report import report_text

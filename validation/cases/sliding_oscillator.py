@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from catenary_fe import theory
 from catenary_fe.fe.wire_problem import SlidingPantograph, WireMotion, WireProblem, even_nodes
-from catenary_fe.system import Pantograph, Stage
+from catenary_fe.layout import Pantograph, Stage
 from validation.case import Case
 from validation.check import Check, compare_curves
 from validation.paper_wire import STRING, C, Floats, run, wire

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.layout import InputError, PowerSystem
 from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_words, criteria_rows
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.system import InputError, PowerSystem
+from catenary_fe.statics import Shape
 from catenary_fe.views import layout, plan, run_waves, static
 from catenary_fe.views import run as run_pictures
 from catenary_fe.views.report import series, tables

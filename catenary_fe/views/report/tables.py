@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.equilibrium import Shape
+from catenary_fe.layout import AnyPantograph, Catenary, Pantograph, Wire, counted
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing, labels
 from catenary_fe.results.csv_files import cell, common_name, decimals_of
 from catenary_fe.results.signal import CUT_OFF, FilterKind
-from catenary_fe.system import AnyPantograph, Catenary, Pantograph, Wire, counted
+from catenary_fe.statics import Shape
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
 
 
 def checks_table(run: Run) -> Table:
-    """The physics guards with this run's numbers."""
+    """The quality checks with this run's numbers."""
     rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
     return Table("", ("check", "this run", "bound", "verdict"), rows)
 

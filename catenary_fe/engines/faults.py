@@ -1,0 +1,104 @@
+"""Where a solve failed, in words of the line: which wire and place, which pantograph, dropper and support."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.layout import Catenary
+
+Floats = NDArray[np.float64]
+_WIRES = "wires"  # key among a system's variables
+
+
+@dataclass(frozen=True)
+class _Span:
+    """A wire's part of a system's coordinates."""
+
+    name: str
+    x: Floats
+    first_node: int
+    width: int
+
+
+def remember_wire(mbs: exu.MainSystem, name: str, x: Floats, first_node: int, width: int) -> None:
+    """Keep what tells a wire's coordinates from others'.
+
+    x : [m], shape (nodes,), along the line
+    first_node : number of its first node
+    width : coordinates of a node
+    """
+    known = dict(mbs.variables).get(_WIRES, [])
+    mbs.variables[_WIRES] = [*known, _Span(name, x, first_node, width)]
+
+
+def place_of_fault(mbs: exu.MainSystem, start: Floats) -> str:
+    """Where the wires went furthest from their start, at the current state; empty where no wire is known.
+
+    start : shape (coordinates,)
+    """
+    found: list[tuple[float, float, str]] = []
+    now = mbs.systemData.GetODE2Coordinates()
+    for wire in dict(mbs.variables).get(_WIRES, []):
+        first = mbs.systemData.GetNodeLTGODE2(wire.first_node)[0]
+        last = first + wire.width * wire.x.size
+        moved = (now[first:last] - start[first:last]).reshape(-1, wire.width)[:, : wire.width // 2]
+        way = np.linalg.norm(moved, axis=1)
+        way[~np.isfinite(way)] = np.inf
+        found.append((float(way.max()), float(wire.x[way.argmax()]), wire.name))
+    if not found:
+        return ""
+    way, x, name = max(found)
+    far = f"by {way:.3g} m" if np.isfinite(way) else "without bound"
+    return f"the solve ran away at {x:.1f} m along the line, where it moved {name} {far}"
+
+
+def place_of_heads(catenary: Catenary, positions: Sequence[float] | Floats) -> str:
+    """Where the pantographs are: position, span, and the support next to it."""
+    supports, texts = catenary.support_positions, []
+    for i, x in enumerate(positions, start=1):
+        span = min(max(int(np.searchsorted(supports, x)), 1), len(catenary.spans))
+        nearest = int(np.abs(supports - x).argmin())
+        gap = x - supports[nearest]
+        side = "behind" if gap >= 0 else "before"
+        texts.append(
+            f"pantograph {i} at {x:.1f} m, in span {span}, {abs(gap):.1f} m {side} support {nearest + 1}"
+        )
+    return "; ".join(texts)
+
+
+def smaller_steps(
+    catenary: Catenary, positions: Sequence[float] | Floats, time: float, parts: int, lasted: float
+) -> str:
+    """A warning that steps were divided: when [s], into how many parts, for how long [ms], and where."""
+    return (
+        f"no convergence with the time step at {time:.4f} s, {place_of_heads(catenary, positions)}: the"
+        f" {lasted:g} ms from there are computed in steps of 1/{parts} of it; if the force is rough there,"
+        " take a smaller time step for all of the run"
+    )
+
+
+def most_strained(
+    catenary: Catenary, positions: Sequence[float] | Floats, forces: Floats, before: Floats
+) -> str:
+    """The dropper near a pantograph whose force changed most, with what it is; empty without droppers.
+
+    forces, before : [N], shape (droppers,), at the last step and at the start
+    """
+    at = catenary.dropper_positions
+    if not at.size:
+        return ""
+    reach = max(span.length for span in catenary.spans)
+    near = np.abs(at[:, None] - np.asarray(positions)).min(axis=1) <= reach
+    change = np.where(near, np.abs(forces - before), -1.0)
+    i = int(change.argmax())
+    dropper, span = catenary.droppers[i], catenary.dropper_spans[i]
+    place = at[i] - catenary.support_positions[span - 1]
+    return (
+        f"most strained there: the dropper of span {span} at {place:g} m ({dropper.stiffness:g} N/m), from"
+        f" {before[i]:.0f} N at the start to {forces[i]:.0f} N"
+    )

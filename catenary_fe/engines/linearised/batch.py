@@ -1,0 +1,215 @@
+"""Batch in which linearised runs advance side by side; a slot whose run is over takes the next one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.engines import arrays, contact_solver, generalized_alpha, kernels
+from catenary_fe.engines.arrays import (
+    SLOTS,
+    Heads,
+    Line,
+    Operator,
+    Records,
+    Wires,
+    Work,
+)
+from catenary_fe.engines.compiled import COMPILED, compiled, kept, stamp, vectorising
+from catenary_fe.engines.contact_solver import advance_heads, record, solve_contacts
+from catenary_fe.engines.generalized_alpha import Scheme, advance, predict
+from catenary_fe.engines.kernels import (
+    couple_stretch_eight,
+    couple_stretch_one,
+    lower_eight,
+    lower_one,
+    take_eight,
+    take_one,
+    upper_eight,
+    upper_one,
+)
+from catenary_fe.engines.linearised.setup import Setup, make_operator
+from catenary_fe.engines.linearised.start import InitialState
+from catenary_fe.engines.recorder import Sizes, load_heads, make_heads, make_records, read_journey
+from catenary_fe.statics import Shape
+
+if TYPE_CHECKING:
+    from catenary_fe.engines.exudyn.run import History
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+BLOCK = 250  # steps between looks at which slots are free
+
+
+class Batch:
+    """Room for runs that advance together, one or ``SLOTS`` at once."""
+
+    def __init__(self, setup: Setup, sizes: Sizes, slots: int, every: int = 0) -> None:
+        assert slots in (1, SLOTS)
+        n, line = setup.size, setup.line
+        j, m = sizes.contacts, sizes.coordinates
+        self._setup, self.count = setup, slots
+        self._operator = make_operator(setup, slots) if COMPILED else None
+        self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
+        self.heads = make_heads(slots, sizes, setup.nominal)
+        width = 2 * line.contact_compliance.value.shape[1]
+        self.work = Work(
+            force=np.zeros((slots, j)),
+            slack=np.zeros((slots, line.k.size)),
+            arm_force=np.zeros((slots, line.links.k.size, 2)),
+            tension=np.zeros((slots, line.tensions.size)),
+            active=np.zeros((slots, line.k.size), dtype=np.int64),
+            active_count=np.zeros(slots, dtype=np.int64),
+            column=np.zeros((slots, j, width)),
+            first=np.zeros((slots, j), dtype=np.int64),
+            width=np.zeros((slots, j), dtype=np.int64),
+            shape=np.zeros((slots, j, 5)),
+            rise=np.zeros((slots, j, 5)),
+            at=np.zeros((slots, j, 4), dtype=np.int64),
+            head=np.zeros((slots, j, m)),
+            head_compliance=np.zeros((slots, j, m)),
+        )
+        counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
+        self.records = make_records(slots, sizes, counts, every)
+
+    def load(self, slot: int, start: InitialState, steps: int) -> None:
+        """Put a run at its start into a slot."""
+        zero = np.zeros_like(start.q)
+        # at rest q* = q and v* = 0
+        for array, values in zip(self.wires, (start.q, zero, zero, zero, start.q), strict=True):
+            array[:, slot] = values
+        self.work.active_count[slot] = 0
+        for array in (self.work.force, self.work.slack, self.work.arm_force):
+            array[slot] = 0.0  # forces with which the run before ended
+        self.work.tension[slot] = start.q[self._setup.line.tensions]
+        load_heads(self.heads, self.records, slot, self._setup.scheme, start, steps)
+        supports, heights = self._setup.line.supports, self._setup.model.heights
+        self.records.supports[slot, supports >= 0, 0] = start.q[supports[supports >= 0]]
+        if self.records.every:
+            self.records.wire[slot, 0, heights >= 0] = start.q[heights[heights >= 0]]
+
+    def advance(self, steps: int = BLOCK) -> None:
+        """Take steps in all slots; slots that are at their end stay there."""
+        setup, wires = self._setup, self.wires
+        rest = (self.heads, self.work, self.records, steps)
+        if self._operator is None:
+            _advance_plainly(setup, wires, *rest)
+            return
+        flat = Wires(*(array.reshape(-1) for array in wires))
+        with vectorising():
+            take = _advance_one if self.count == 1 else _advance_eight
+            take(setup.scheme, self._operator, setup.line, wires, flat, *rest)
+
+    def history(self, slot: int, start: InitialState, steps: int, shape: Shape) -> History:
+        """What a slot's run recorded."""
+        return read_journey(self.records, self.heads, slot, start, steps, self._setup.scheme.h, shape)
+
+    def tension_changes(self, slot: int) -> tuple[Floats, Integers]:
+        """[N], shape (gaps,): largest change of each gap's tension, and the steps at whose ends they are."""
+        return self.records.change[slot], self.records.changed[slot]
+
+    def shortenings(self, slot: int) -> tuple[Floats, Integers]:
+        """[m], shape (droppers,): largest shortening of each dropper while slack, and likewise the steps."""
+        return self.records.shortening[slot], self.records.shortened[slot]
+
+    def free(self) -> list[int]:
+        """Batch whose run is over."""
+        return np.flatnonzero(self.heads.step >= self.heads.last).tolist()
+
+
+@compiled
+def _finish(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, records: Records) -> None:
+    """Forces and records of all slots, and the next step's prediction of the masses."""
+    for c in range(heads.step.size):
+        if heads.step[c] < heads.last[c]:
+            solve_contacts(scheme, line, wires, heads, work, records, c)
+            record(scheme, line, wires, heads, work, records, c)
+            advance_heads(scheme, heads, c)
+            heads.step[c] += 1
+
+
+def _loops(sources: str) -> tuple[Any, Any]:
+    """Steps of one slot and of eight; ``sources`` is the stamp of all that they call."""
+
+    @kept
+    def one(
+        scheme: Scheme,
+        operator: Operator,
+        line: Line,
+        wires: Wires,
+        flat: Wires,
+        heads: Heads,
+        work: Work,
+        records: Records,
+        steps: int,
+    ) -> int:
+        groups = flat.x.size // 4
+        for _ in range(steps):
+            flat.x[:] = line.load
+            take_one(operator.stiffness, flat.w, flat.x)
+            take_one(operator.rest, flat.v, flat.x)
+            couple_stretch_one(line, flat.q, work.tension[0], flat.x)
+            lower_one(operator.lower, flat.x, 0, groups)
+            upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
+            _finish(scheme, line, wires, heads, work, records)
+            predict(scheme, operator.beta, flat)
+        return len(sources)
+
+    @kept
+    def eight(
+        scheme: Scheme,
+        operator: Operator,
+        line: Line,
+        wires: Wires,
+        flat: Wires,
+        heads: Heads,
+        work: Work,
+        records: Records,
+        steps: int,
+    ) -> int:
+        for _ in range(steps):
+            for i in range(line.load.size):
+                wires.x[i, :] = line.load[i]
+            take_eight(operator.stiffness, wires.w, wires.x)
+            take_eight(operator.rest, wires.v, wires.x)
+            couple_stretch_eight(line, wires.q, work.tension, wires.x)
+            lower_eight(operator.lower, wires.x)
+            upper_eight(operator.upper, operator.inverse, wires.x)
+            _finish(scheme, line, wires, heads, work, records)
+            predict(scheme, operator.beta, flat)
+        return len(sources)
+
+    return one, eight
+
+
+_advance_one, _advance_eight = _loops(stamp(arrays, generalized_alpha, contact_solver, kernels))
+
+
+def _advance_plainly(
+    setup: Setup, wires: Wires, heads: Heads, work: Work, records: Records, steps: int
+) -> None:
+    """Without a compiler: scipy's products and solves, the few forces in Python."""
+    model, scheme = setup.model, setup.scheme
+    for _ in range(steps):
+        if (heads.step >= heads.last).all():
+            return
+        wires.x[:] = setup.line.load[:, None] - (model.stiffness @ wires.q + model.damping @ wires.v)
+        for slot in range(wires.x.shape[1]):
+            couple_stretch_one(setup.line, wires.q[:, slot], work.tension[slot], wires.x[:, slot])
+        wires.x[:] = setup.factor.solve(wires.x)
+        _finish(scheme, setup.line, wires, heads, work, records)
+        state = advance(scheme, wires.q, wires.v, wires.c, wires.x)
+        for array, values in zip(wires, state, strict=False):
+            array[:] = values
+
+
+def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> int:
+    """``SLOTS`` if there are several runs and their histories fit into the memory [bytes], else 1."""
+    line = setup.line
+    histories = (
+        line.k.size + line.supports.size + 2 * sizes.contacts + sizes.pantographs * sizes.coordinates + 2
+    )
+    size = 8.0 * SLOTS * (sizes.steps * histories + sizes.shapes * line.heights.size)
+    return SLOTS if runs > 1 and size <= memory else 1

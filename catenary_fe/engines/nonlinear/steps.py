@@ -1,0 +1,298 @@
+"""Steps of a compiled nonlinear run.
+
+Generalised-α as in a linearised run. Newton's method with the matrix at rest, which is corrected exactly for
+what changes quickly: contacts, whose law is solved along with each iteration, and droppers that are slack.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from catenary_fe.engines import arrays as shared_arrays
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels
+from catenary_fe.engines.arrays import Floats, Heads, Records, Wires, Work
+from catenary_fe.engines.compiled import compiled, kept, stamp
+from catenary_fe.engines.contact_solver import (
+    SWEEPS,
+    TOLERANCE,
+    advance_heads,
+    free_heads,
+    place_head,
+    update_contact,
+    weigh_contact,
+)
+from catenary_fe.engines.generalized_alpha import Scheme, predict
+from catenary_fe.engines.kernels import take_one
+from catenary_fe.engines.nonlinear import arrays, cables, forces
+from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Factor, Motion, Slack, Stations, System
+from catenary_fe.engines.nonlinear.cables import take_cables
+from catenary_fe.engines.nonlinear.forces import (
+    local_compliance,
+    solve,
+    take_droppers,
+    take_links,
+    woodbury_update,
+)
+
+ITERATIONS = 20
+FLOOR = 1e-8  # [m] motion in a step below which a run is at rest
+FAR = 1.0  # [m] displacement in a step that is none any more
+
+
+@compiled
+def _place(
+    scheme: Scheme,
+    stations: Stations,
+    factor: Factor,
+    heads: Heads,
+    work: Work,
+    total: Floats,
+    time: float,
+) -> None:
+    """Contacts where they are at the step's end; the forces of the step before are the first guess."""
+    axes = total.size // (2 * stations.rest.size)
+    advance_heads(scheme, heads, 0)
+    free_heads(heads, 0)
+    for j in range(heads.owner.shape[1]):
+        p = heads.owner[0, j]
+        if p < 0:
+            continue
+        position = heads.start[0, j] + heads.speed[0] * time
+        e, _ = weigh_contact(stations, heads, work, 0, j, position)
+        place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
+        first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
+        work.first[0, j], work.width[0, j] = first, width
+        for s in range(heads.x.shape[2]):
+            heads.x[0, p, s] -= work.force[0, j] * work.head_compliance[0, j, s]
+
+
+@compiled
+def _sideways(weights: Floats, total: Floats, axes: int, node: int) -> float:
+    """[m] to the left of the track at a contact, as the wire was a step ago; contact wires come first."""
+    place = 0.0
+    if axes == 3:
+        for m in range(4):
+            place += weights[m] * total[6 * (node + m // 2) + 1 + 3 * (m % 2)]
+    return place
+
+
+@compiled
+def _move(system: System, scheme: Scheme, wires: Wires, motion: Motion) -> None:
+    """Positions and velocities that belong to the accelerations."""
+    q, v, x = wires.q, wires.v, wires.x
+    for i in range(x.shape[0]):
+        motion.q[i] = q[i, 0] + scheme.b * x[i, 0]
+        motion.v[i] = v[i, 0] + scheme.g * x[i, 0]
+    for i in range(system.place.size):
+        k = system.place[i]
+        motion.total[i] = system.reference[i] + (motion.q[k] if k >= 0 else 0.0)
+
+
+@compiled
+def _contacts(heads: Heads, work: Work, residual: Floats) -> None:
+    for j in range(heads.owner.shape[1]):
+        if heads.owner[0, j] >= 0:
+            for m in range(4):
+                if work.at[0, j, m] >= 0:
+                    residual[work.at[0, j, m]] += work.force[0, j] * work.shape[0, j, m]
+
+
+@compiled
+def _relax(scheme: Scheme, wires: Wires, heads: Heads, work: Work) -> None:
+    """Bring the contact forces to their laws, and the accelerations with them."""
+    contacts = heads.owner.shape[1]
+    for _ in range(SWEEPS):
+        change = 0.0
+        for j in range(contacts):
+            if heads.owner[0, j] >= 0:
+                change = max(change, update_contact(scheme, wires, heads, work, 0, j))
+        if change <= TOLERANCE or contacts == 1:
+            break
+
+
+@compiled
+def _correct(scheme: Scheme, wires: Wires, motion: Motion) -> tuple[float, float]:
+    """Largest displacement of this iteration, and of the step so far [m]."""
+    change, moved = 0.0, 0.0
+    for i in range(motion.before.size):
+        change = max(change, abs(wires.x[i, 0] - motion.before[i]))
+        moved = max(moved, abs(scheme.h * motion.v[i]))
+    return scheme.b * change, moved
+
+
+@compiled
+def _record(
+    scheme: Scheme,
+    stations: Stations,
+    system: System,
+    wires: Wires,
+    motion: Motion,
+    heads: Heads,
+    work: Work,
+    to: Records,
+) -> None:
+    """Write down the state at the step's end."""
+    n = heads.step[0] + 1
+    for j in range(heads.owner.shape[1]):
+        if heads.owner[0, j] >= 0:
+            to.force[0, j, n] = work.force[0, j]
+            z = work.shape[0, j, 4] - heads.nominal
+            for m in range(4):
+                i = work.at[0, j, m]
+                if i >= 0:
+                    z += work.shape[0, j, m] * (wires.q[i, 0] + scheme.b * wires.x[i, 0])
+            to.height[0, j, n] = z
+    for p in range(heads.x.shape[1]):
+        for s in range(heads.x.shape[2]):
+            to.masses[0, p, s, n] = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+    for s in range(stations.supports.size):
+        i = stations.supports[s]
+        to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
+    if to.every > 0 and n % to.every == 0:
+        for node in range(stations.heights.size):
+            i = stations.heights[node]
+            to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
+
+
+@compiled
+def _add_energy(
+    system: System,
+    scheme: Scheme,
+    wires: Wires,
+    motion: Motion,
+    heads: Heads,
+    work: Work,
+    energy: EnergyBalance,
+) -> None:
+    """Add what contacts did and dampers took in this step, or part of one."""
+    moved, drag, lost = motion.before, motion.residual, 0.0
+    for i in range(moved.size):
+        q = wires.q[i, 0] + scheme.b * wires.x[i, 0]
+        moved[i], energy.q[i] = q - energy.q[i], q
+        motion.v[i] = wires.v[i, 0] + scheme.g * wires.x[i, 0]
+    drag[:] = 0.0
+    take_one(system.damping, motion.v, drag)  # its negative
+    for i in range(moved.size):
+        lost += (energy.drag[i] - drag[i]) * moved[i] / 2
+        energy.drag[i] = -drag[i]
+    for i in range(energy.span.size):
+        stretch = energy.new_span[i] - energy.span[i]
+        lost += (energy.damper[i] + energy.new_damper[i]) * stretch / 2
+        energy.damper[i], energy.span[i] = energy.new_damper[i], energy.new_span[i]
+    energy.work[0] += _contact_work(scheme, heads, work, energy, moved)
+    energy.work[1] += lost + _head_losses(scheme, heads, energy)
+
+
+@compiled
+def _contact_work(scheme: Scheme, heads: Heads, work: Work, energy: EnergyBalance, moved: Floats) -> float:
+    """Work of the contacts on wires and masses [J]."""
+    driven = 0.0
+    for j in range(heads.owner.shape[1]):
+        p = heads.owner[0, j]
+        if p < 0:
+            continue
+        before, now = 0.0, 0.0
+        for m in range(4):
+            if energy.at[j, m] >= 0:
+                before += energy.shape[j, m] * moved[energy.at[j, m]]
+            if work.at[0, j, m] >= 0:
+                now += work.shape[0, j, m] * moved[work.at[0, j, m]]
+            energy.at[j, m], energy.shape[j, m] = work.at[0, j, m], work.shape[0, j, m]
+        for s in range(heads.x.shape[2]):
+            rise = heads.q[0, p, s] + scheme.b * heads.x[0, p, s] - energy.heads[p, s]
+            before -= energy.head[j, s] * rise
+            now -= work.head[0, j, s] * rise
+            energy.head[j, s] = work.head[0, j, s]
+        driven += (energy.force[j] * before + work.force[0, j] * now) / 2
+        energy.force[j] = work.force[0, j]
+    return driven
+
+
+@compiled
+def _head_losses(scheme: Scheme, heads: Heads, energy: EnergyBalance) -> float:
+    """What the pantographs' dampers took [J]."""
+    lost = 0.0
+    for p in range(heads.x.shape[1]):
+        for s in range(heads.x.shape[2]):
+            drag = 0.0
+            for r in range(heads.x.shape[2]):
+                drag += heads.D[0, p, s, r] * (heads.v[0, p, r] + scheme.g * heads.x[0, p, r])
+            place = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+            lost += (energy.head_drag[p, s] + drag) * (place - energy.heads[p, s]) / 2
+            energy.heads[p, s], energy.head_drag[p, s] = place, drag
+    return lost
+
+
+def _loop(sources: str) -> Any:
+    """Steps; ``sources`` is the stamp of all that they call."""
+
+    @kept
+    def advance(
+        scheme: Scheme,
+        system: System,
+        stations: Stations,
+        factor: Factor,
+        wires: Wires,
+        flat: Wires,
+        motion: Motion,
+        slack: Slack,
+        heads: Heads,
+        work: Work,
+        records: Records,
+        energy: EnergyBalance,
+        steps: int,
+        parts: int,
+        tolerance: float,
+    ) -> tuple[bool, int]:
+        """Take steps, each in so many parts; returns whether all converged, and the number of iterations."""
+        iterations, axes = len(sources) * 0, system.droppers.pivot.shape[1]
+        begin = heads.step[0] * parts
+        for n in range(begin, begin + steps * parts):
+            predict(scheme, 0.0, flat)
+            _place(scheme, stations, factor, heads, work, motion.total, scheme.h * (n + 1))
+            residual, converged, change = motion.residual, False, FAR
+            for iteration in range(ITERATIONS):
+                iterations += 1
+                _move(system, scheme, wires, motion)
+                motion.inner[:] = 0.0
+                take_cables(axes, system.elements, motion.total, motion.inner)
+                take_droppers(system, scheme, motion, slack, energy, records.droppers[0], heads.step[0] + 1)
+                take_links(system.links, motion.total, motion.inner)
+                for i in range(residual.size):
+                    residual[i] = system.force[i] - system.ground[i] * motion.q[i]
+                for i in range(system.place.size):
+                    if system.place[i] >= 0:
+                        residual[system.place[i]] += motion.inner[i]
+                take_one(system.mass, flat.x, residual)
+                take_one(system.damping, motion.v, residual)
+                _contacts(heads, work, residual)
+                solve(factor, residual)
+                woodbury_update(factor, slack, residual)
+                for i in range(residual.size):
+                    motion.before[i] = flat.x[i]
+                    flat.x[i] += residual[i]
+                _relax(scheme, wires, heads, work)
+                earlier = change
+                change, moved = _correct(scheme, wires, motion)
+                if not change < FAR:
+                    break
+                rate = change / earlier
+                converged = (
+                    iteration > 0 and rate < 1 and change * rate / (1 - rate) <= tolerance * max(moved, FLOOR)
+                )
+                if converged:
+                    break
+            if not converged:
+                return False, iterations
+            _add_energy(system, scheme, wires, motion, heads, work, energy)
+            if (n + 1) % parts == 0:
+                _record(scheme, stations, system, wires, motion, heads, work, records)
+                heads.step[0] += 1
+                for i in range(2):
+                    energy.history[i, heads.step[0]] = energy.work[i]
+        return True, iterations
+
+    return advance
+
+
+advance = _loop(stamp(shared_arrays, generalized_alpha, contact_solver, kernels, arrays, cables, forces))

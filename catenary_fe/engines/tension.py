@@ -1,0 +1,125 @@
+"""Tension of the wires while they move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.installation import WireLine, wire_kinds
+from catenary_fe.fe.mesh import Mesh
+from catenary_fe.layout import Catenary
+
+if TYPE_CHECKING:
+    from catenary_fe.engines.exudyn.run import History
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+INTERVAL = 0.05  # [s] between readings in a run: 4 m at 300 km/h
+_POINTS = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2  # Gauss: the mean of a cubic wire's strain
+
+
+class TensionGauge:
+    """Mean tension of each wire between its supports; of a stitch wire, between its clamps.
+
+    A wave along the wire crosses a span of 60 m in 16 ms: within a span the tension is even, as far as what
+    pantographs excite goes.
+    """
+
+    def __init__(self, catenary: Catenary, mesh: Mesh, lines: Sequence[WireLine]) -> None:
+        self._axes = lines[0].axes
+        self._reference = np.concatenate([line.coordinates() for line in lines])
+        lengths = np.concatenate([line.lengths for line in lines])
+        kinds = wire_kinds(catenary, mesh)
+        self._first = np.concatenate(
+            [a + np.arange(line.lengths.size) for a, line in zip(mesh.first_nodes, lines, strict=False)]
+        )
+        sections, begin, owner = [], 0, []
+        for number, (stations, line) in enumerate(zip(mesh.wires, lines, strict=True)):
+            whole = number >= mesh.first_stitch
+            starts = np.array([0]) if whole else np.asarray(stations.supports)[:-1]
+            sections.append(begin + starts)
+            owner += [number] * starts.size
+            begin += line.lengths.size
+        self._sections, self._owner = np.concatenate(sections), np.array(owner)
+        self._length = np.add.reduceat(lengths, self._sections)
+        stiffness = np.array([kind.axial_stiffness for kind in kinds])[self._owner]
+        self._stiffness = stiffness
+        self._nominal = np.array([kind.tension for kind in kinds])[self._owner]
+        xi, one = _POINTS, np.ones((lengths.size, 1))
+        self._rise = 6 * (xi - xi**2) / lengths[:, None]
+        self._left, self._right = one * (1 - 4 * xi + 3 * xi**2), one * (3 * xi**2 - 2 * xi)
+        self._share = lengths / 2
+
+    def tensions(self, q: Floats) -> Floats:
+        """[N], shape (sections,), at the system's coordinates ``q``."""
+        axes = self._axes
+        shape = self._reference + q[: self._reference.size].reshape(self._reference.shape)
+        a, b = shape[self._first], shape[self._first + 1]
+        along: Floats = (
+            self._rise[:, :, None] * (b - a)[:, None, :axes]
+            + self._left[:, :, None] * a[:, None, axes:]
+            + self._right[:, :, None] * b[:, None, axes:]
+        )
+        strain = (np.sqrt((along**2).sum(axis=2)) - 1).sum(axis=1) * self._share
+        mean: Floats = np.add.reduceat(strain, self._sections) / self._length
+        tensions: Floats = self._nominal + self._stiffness * mean
+        return tensions
+
+    def largest_change(self, now: Floats, before: Floats) -> tuple[Floats, Integers]:
+        """Of the sections of each wire, the largest change over its tension before, and which section it is.
+
+        Shape (wires,) both; sections count from 1, so that those of a whole wire are its spans.
+        """
+        share = np.abs(now / before - 1)
+        by_wire = [share[self._owner == wire] for wire in np.unique(self._owner)]
+        return np.array([own.max() for own in by_wire]), np.array([own.argmax() + 1 for own in by_wire])
+
+
+class TensionRecord:
+    """Readings of a gauge during a run."""
+
+    def __init__(self, gauge: TensionGauge) -> None:
+        self._gauge = gauge
+        self._times: list[float] = []
+        self._changes: list[Floats] = []
+        self._spans: list[Integers] = []
+        self._first: Floats | None = None
+
+    def read(self, time: float, q: Floats) -> None:
+        """Take the tensions at a time [s] and the system's coordinates then."""
+        now = self._gauge.tensions(q)
+        if self._first is None:
+            self._first = now
+        change, span = self._gauge.largest_change(now, self._first)
+        self._changes.append(change)
+        self._spans.append(span)
+        self._times.append(time)
+
+    def go_on(self, times: Floats, changes: Floats, spans: Integers) -> None:
+        """Take up readings made before, the first one excepted, which is read again."""
+        self._times, self._changes, self._spans = times.tolist(), list(changes.T), list(spans.T)
+
+    def joined(self, history: History) -> History:
+        """The history with what was read."""
+        return replace(
+            history, tension_change=self.changes, tension_span=self.spans, tension_times=self.times
+        )
+
+    @property
+    def times(self) -> Floats:
+        """[s], shape (readings,)."""
+        return np.array(self._times)
+
+    @property
+    def changes(self) -> Floats:
+        """Shape (wires, readings)."""
+        return np.array(self._changes).T
+
+    @property
+    def spans(self) -> Integers:
+        """Shape (wires, readings), from 1: where each wire's largest change is."""
+        return np.array(self._spans).T

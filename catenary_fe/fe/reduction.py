@@ -1,0 +1,394 @@
+"""A catenary's small motions about its static state, as sparse matrices of few coordinates.
+
+What a wire does along the track matters through its tension only, which is even between two clamps up to
+hundreds of hertz. So the coordinates along the track are kept at clamps and supports alone; between them the
+wire is a spring whose tension is a coordinate of its own, and the matrices stay narrow:
+
+    K_b q + G t = f      G_e the change of a gap's length with the coordinates q
+    Gᵀ q − t / k = 0     t its tension, k its stiffness
+
+Two terms of second order are kept beside the matrices, since a tension that changes by a per cent changes how
+the wire moves by as much: inclinations lengthen a gap, and its change of tension works on inclined elements.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.cable import tangent_blocks
+from catenary_fe.fe.installation import Installation, element_pulls
+from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.spring import FIXED
+from catenary_fe.fe.system import System, assemble
+from catenary_fe.layout import Catenary
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+ALONG = 0
+
+
+@dataclass(frozen=True)
+class ContactLine:
+    """A contact wire as a pantograph meets it.
+
+    x : [m], shape (nodes,), stations
+    lengths : [m], shape (nodes - 1,), of the elements
+    static : [m and 1], shape (nodes, 2), height and vertical slope at rest
+    lateral : [m and 1], shape (nodes, 2), likewise to the left
+    index : shape (nodes, 2), numbers of the coordinates of height and slope, or FIXED
+    supports : shape (spans + 1,), numbers of the height at the supports, or FIXED
+    """
+
+    x: Floats
+    lengths: Floats
+    static: Floats
+    lateral: Floats
+    index: Integers
+    supports: Integers
+
+
+@dataclass(frozen=True)
+class SteadyArmBars:
+    """Steady arms that are links: the wire on one swings on a circle, of which the matrices know the tangent.
+
+    index : shape (links, 2), numbers of the coordinates to the left and up
+    span : [m], shape (links, 2), likewise from the wire to the pivot, at rest
+    length : [m], shape (links,), without force
+    stiffness : [N/m], shape (links,)
+    """
+
+    index: Integers
+    span: Floats
+    length: Floats
+    stiffness: Floats
+
+
+@dataclass(frozen=True)
+class StretchCoupling:
+    """Elements seen along one axis across the track, of which each has one or two.
+
+    index : shape (elements, 4), numbers of place and slope at the first node, then at the second, or FIXED
+    length : [m], shape (elements,)
+    gap : shape (elements,), number of the element's gap in ``tensions``
+    """
+
+    index: Integers
+    length: Floats
+    gap: Integers
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """Lengths of wire between two clamps, over which the tension is even.
+
+    wire : shape (gaps,), number of the wire in the mesh
+    ends : [m], shape (gaps, 2), along the line
+    tension : [N], shape (gaps,), nominal
+    """
+
+    wire: Integers
+    ends: Floats
+    tension: Floats
+
+
+@dataclass(frozen=True)
+class LinearModel:
+    """M q̈ + D q̇ + K q = f with all droppers taut; coordinates in the order of their stations.
+
+    mass, stiffness, damping : sparse, symmetric, shape (size, size)
+    dropper_rows : sparse, shape (droppers, size), elongation of each dropper
+    dropper_stiffness, dropper_damping : [N/m], [N s/m], shape (droppers,)
+    dropper_tension : [N], shape (droppers,), at rest; below 0 for those that are slack there: what they would
+        push with if they could
+    contacts : the contact wires
+    heights : shape (nodes of all wires,), numbers of the coordinates up, or FIXED
+    tensions : shape (gaps,), numbers of the coordinates that are tensions [N]
+    links : steady arms that swing
+    stretch : elements whose inclination lengthens a gap
+    gaps : where these tensions are
+    in_space : whether it has coordinates to the side
+    """
+
+    mass: Any
+    stiffness: Any
+    damping: Any
+    dropper_rows: Any
+    dropper_stiffness: Floats
+    dropper_damping: Floats
+    dropper_tension: Floats
+    contacts: tuple[ContactLine, ...]
+    heights: Integers
+    tensions: Integers
+    gaps: Gaps
+    links: SteadyArmBars
+    stretch: StretchCoupling
+    in_space: bool
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return int(self.mass.shape[0])
+
+    @property
+    def load(self) -> Floats:
+        """[N], shape (size,), constant: holds the state at rest, where slack droppers do not push."""
+        load: Floats = -self.dropper_rows.T @ np.minimum(self.dropper_tension, 0.0)
+        return load
+
+
+def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> LinearModel:
+    """The catenary's linearised model at static equilibrium."""
+    system = assemble(catenary, mesh, installation)
+    wires = _reduced_wires(system, catenary, mesh, installation)
+    whole, gaps = system.place.size, sum(wire.gap_stiffness.size for wire in wires)
+    M, K = _assemble(wires, whole)
+    droppers = system.droppers
+    span = droppers.span(system.reference)
+    pull, push = droppers.tension(span), droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
+    D = catenary.damping.alpha * M + catenary.damping.beta * K
+    D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping), gaps)
+    K = K + _padded(system.spring_stiffness(), gaps)
+    M = M + _padded(system.mass - system.wire_mass, gaps)
+    T, place = _kept(system, mesh, installation, wires, gaps)
+    M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
+    up = system.axes - 1
+    return LinearModel(
+        mass=M,
+        stiffness=K,
+        damping=D,
+        dropper_rows=(system.elongations() @ T[:whole]).tocsr(),
+        dropper_stiffness=droppers.stiffness,
+        dropper_damping=droppers.damping,
+        dropper_tension=np.where(pull > 0, pull, np.minimum(push, 0.0)),
+        contacts=contact_lines(system, mesh, installation, place),
+        heights=place[2 * system.axes * np.arange(mesh.first_nodes[-1]) + up],
+        tensions=place[whole:],
+        gaps=_gaps(wires),
+        links=_swinging_links(system, place),
+        stretch=_stretch_coupling(system, installation, wires, place),
+        in_space=system.in_space,
+    )
+
+
+def _gaps(wires: list[_ReducedWire]) -> Gaps:
+    return Gaps(
+        wire=np.repeat(np.arange(len(wires)), [wire.tension.size for wire in wires]),
+        ends=np.concatenate([np.column_stack([wire.gap_x[:-1], wire.gap_x[1:]]) for wire in wires]),
+        tension=np.concatenate([wire.tension for wire in wires]),
+    )
+
+
+def _stretch_coupling(
+    system: System, installation: Installation, wires: list[_ReducedWire], place: Integers
+) -> StretchCoupling:
+    across = system.axes - 1
+    index, length, gap, first = [], [], [], 0
+    for wire, line in zip(wires, installation.lines, strict=True):
+        for axis in range(across):
+            index.append(place[wire.across[:, axis::across]])
+            length.append(line.lengths)
+            gap.append(first + wire.gap_of)
+        first += wire.gap_stiffness.size
+    return StretchCoupling(np.concatenate(index), np.concatenate(length), np.concatenate(gap))
+
+
+def _swinging_links(system: System, place: Integers) -> SteadyArmBars:
+    arms, axes = system.arms, system.axes
+    return SteadyArmBars(
+        index=place[arms.first[:, None] + [axes - 2, axes - 1]],
+        span=arms.span(system.reference)[:, -2:],
+        length=arms.length,
+        stiffness=arms.stiffness,
+    )
+
+
+def contact_lines(
+    system: System, mesh: Mesh, installation: Installation, place: Integers
+) -> tuple[ContactLine, ...]:
+    """The contact wires where they were installed, with their coordinates at ``place``."""
+    found, axes, up = [], system.axes, system.axes - 1
+    for number, line in enumerate(installation.lines[: mesh.contact_wires]):
+        nodes = 2 * axes * (mesh.first_nodes[number] + np.arange(line.x.size))
+        index, q = place[nodes[:, None] + [up, up + axes]], line.coordinates()
+        lateral = q[:, [1, 1 + axes]] if axes == 3 else np.zeros((len(q), 2))
+        static, supports = q[:, [up, up + axes]], index[mesh.wires[number].supports, 0]
+        found.append(ContactLine(line.x, line.lengths, static, lateral, index, supports))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _ReducedWire:
+    """Elements of a wire without the coordinates along the track.
+
+    across : shape (elements, m), numbers of their other coordinates
+    stiffness, mass : shape (elements, m, m)
+    lengthening : shape (elements, m), of an element with its other coordinates, its ends held along the track
+    gap_of : shape (elements,)
+    gap_ends : shape (gaps, 2), numbers of the coordinates along the track at the ends
+    gap_stiffness, gap_mass : shape (gaps,)
+    gap_x : [m], shape (gaps + 1,), stations of the gaps' ends
+    tension : [N], shape (gaps,), nominal
+    """
+
+    across: Integers
+    stiffness: Floats
+    mass: Floats
+    lengthening: Floats
+    gap_of: Integers
+    gap_ends: Integers
+    gap_stiffness: Floats
+    gap_mass: Floats
+    gap_x: Floats
+    tension: Floats
+
+
+def _reduced_wires(
+    system: System, catenary: Catenary, mesh: Mesh, installation: Installation
+) -> list[_ReducedWire]:
+    rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
+    stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
+    found, begin = [], 0
+    for number, pull in enumerate(element_pulls(catenary, mesh)):
+        part = slice(begin, begin + pull.size)
+        begin += pull.size
+        index, x = system.elements()[part], installation.lines[number].x
+        found.append(_reduced(stiffness[part], mass[part], index, _clamps(mesh, number), x, pull))
+    return found
+
+
+def _reduced(
+    K: Floats, M: Floats, index: Integers, clamps: Integers, x: Floats, pull: Floats
+) -> _ReducedWire:
+    """Condense slopes along the track in each element, and positions along the track between clamps.
+
+    K, M, index : of a wire's elements and their coordinates
+    clamps, x, pull : nodes, [m] stations, [N] nominal along the track
+    """
+    width = index.shape[1] // 2
+    ends = np.array([ALONG, width + ALONG])
+    slopes = ends + width // 2
+    across = np.setdiff1d(np.arange(2 * width), [*ends, *slopes])
+    kept = np.concatenate([ends, across])
+    inner = np.linalg.solve(K[:, slopes[:, None], slopes], K[:, slopes[:, None], kept])
+    K = K[:, kept[:, None], kept] - K[:, kept[:, None], slopes] @ inner
+    k = (K[:, 0, 0] - K[:, 0, 1]) / 2
+    lengthening = (K[:, 1, 2:] - K[:, 0, 2:]) / (2 * k[:, None])
+    stiffness = K[:, 2:, 2:] - k[:, None, None] * lengthening[:, :, None] * lengthening[:, None, :]
+    gap_of = np.searchsorted(clamps, np.arange(len(M)), side="right") - 1
+    element_mass = M[:, ends[:, None], ends].sum(axis=(1, 2))  # of a wire moved along the track
+    first = index[0, 0] + width * clamps
+    return _ReducedWire(
+        across=index[:, across],
+        stiffness=stiffness,
+        mass=M[:, across[:, None], across],
+        lengthening=lengthening,
+        gap_of=gap_of,
+        gap_ends=np.column_stack([first[:-1], first[1:]]),
+        gap_stiffness=1 / np.bincount(gap_of, 1 / k),
+        gap_mass=np.bincount(gap_of, element_mass).astype(float),
+        gap_x=x[clamps],
+        tension=pull[clamps[:-1]],
+    )
+
+
+def _clamps(mesh: Mesh, number: int) -> Integers:
+    """Nodes of a wire that something is fixed to, its ends among them."""
+    fixed = [mesh.lower.node[mesh.lower.on(number)], mesh.upper.node[mesh.upper.on(number)]]
+    fixed += [mesh.wires[number].supports, np.array([0, mesh.wires[number].x.size - 1])]
+    if number == mesh.contact_wires:
+        fixed.append(mesh.stitch_ends.ravel())
+    return np.unique(np.concatenate(fixed))
+
+
+def _assemble(wires: list[_ReducedWire], whole: int) -> tuple[Any, Any]:
+    """Mass and stiffness of the wires over all coordinates and tensions."""
+    from scipy.sparse import coo_matrix
+
+    mass, stiffness = _Triplets(), _Triplets()
+    first = whole
+    for wire in wires:
+        count = wire.gap_stiffness.size
+        gaps = first + np.arange(count)
+        first += count
+        stiffness.add_blocks(wire.across, wire.stiffness)
+        mass.add_blocks(wire.across, wire.mass)
+        mass.add_blocks(wire.gap_ends, wire.gap_mass[:, None, None] * np.array([[2.0, 1.0], [1.0, 2.0]]) / 6)
+        rows = np.repeat(gaps[wire.gap_of], wire.across.shape[1])
+        stiffness.add_pairs(rows, wire.across.ravel(), wire.lengthening.ravel())
+        stiffness.add_pairs(gaps, wire.gap_ends[:, 0], np.full(count, -1.0))
+        stiffness.add_pairs(gaps, wire.gap_ends[:, 1], np.full(count, 1.0))
+        stiffness.add(gaps, gaps, -1 / wire.gap_stiffness)
+    shape = (first, first)
+    return coo_matrix(mass.triplets(), shape=shape).tocsr(), coo_matrix(
+        stiffness.triplets(), shape=shape
+    ).tocsr()
+
+
+class _Triplets:
+    """Rows, columns and values of a sparse matrix that grows."""
+
+    def __init__(self) -> None:
+        self._parts: list[tuple[Integers, Integers, Floats]] = []
+
+    def add(self, rows: Integers, columns: Integers, values: Floats) -> None:
+        self._parts.append((rows, columns, values))
+
+    def add_pairs(self, rows: Integers, columns: Integers, values: Floats) -> None:
+        self.add(rows, columns, values)
+        self.add(columns, rows, values)
+
+    def add_blocks(self, index: Integers, blocks: Floats) -> None:
+        m = index.shape[1]
+        self.add(np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel(), blocks.ravel())
+
+    def triplets(self) -> tuple[Floats, tuple[Integers, Integers]]:
+        rows, columns, values = (np.concatenate(part) for part in zip(*self._parts, strict=True))
+        return values, (rows, columns)
+
+
+def _kept(
+    system: System, mesh: Mesh, installation: Installation, wires: list[_ReducedWire], gaps: int
+) -> tuple[Any, Integers]:
+    """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or FIXED.
+
+    A gap's tension comes just before the gap's end.
+    """
+    from scipy.sparse import block_diag, identity
+
+    T = block_diag([system.transformation, identity(gaps)]).tocsc()
+    whole, width = T.shape[0] - gaps, 2 * system.axes
+    station = np.full(T.shape[0], np.nan)
+    for wire, line, first in zip(wires, installation.lines, mesh.first_nodes, strict=False):
+        nodes = width * (first + np.arange(line.x.size))
+        across = np.setdiff1d(np.arange(width), [ALONG, ALONG + system.axes])
+        station[(nodes[:, None] + across).ravel()] = np.repeat(line.x, across.size)
+        station[wire.gap_ends[:, 1]] = wire.gap_x[1:]
+        station[wire.gap_ends[0, 0]] = wire.gap_x[0]
+    station[whole:] = np.concatenate([wire.gap_x[1:] for wire in wires])
+    rows, columns = T.nonzero()
+    of_free = np.full(T.shape[1], np.nan)
+    of_free[columns] = station[rows]
+    is_tension = np.arange(T.shape[1]) >= T.shape[1] - gaps
+    order = np.lexsort((~is_tension, of_free))[: int(np.isfinite(of_free).sum())]
+    new = np.full(T.shape[1], FIXED, dtype=np.int64)
+    new[order] = np.arange(order.size)
+    place = np.full(T.shape[0], FIXED, dtype=np.int64)
+    place[rows] = new[columns]
+    return T[:, order].tocsr(), place
+
+
+def _diagonal(values: Floats) -> Any:
+    from scipy.sparse import diags
+
+    return diags(values).tocsr()
+
+
+def _padded(matrix: Any, extra: int) -> Any:
+    from scipy.sparse import block_diag, csr_matrix
+
+    return block_diag([matrix, csr_matrix((extra, extra))]).tocsr()

@@ -1,0 +1,118 @@
+"""What holds the wires at the masts and the line's ends: springs and preloads, fixed coordinates, bars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.installation import Installation, WireLine, wire_kinds
+from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.spring import FIXED, Springs
+from catenary_fe.layout import Catenary
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LINK_STIFFNESS = 1e7  # [N/m] of a steady arm along its length: a tube's, far stiffer than the wire on it
+
+
+class Held:
+    """What holds the wires at masts and ends: springs and preloads, fixed coordinates, bars."""
+
+    def __init__(self, catenary: Catenary, mesh: Mesh, installation: Installation, size: int) -> None:
+        self.catenary, self.mesh, self.installation = catenary, mesh, installation
+        self.axes, self.width = installation.axes, 2 * installation.axes
+        self.stiffness, self.damping, self.force = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.leader = np.arange(size)
+        self.fixed = np.zeros(size, dtype=bool)
+        self._bars: list[tuple[int, Floats, float]] = []
+        self._ends()
+        self._stitch_wires()
+        for number in range(mesh.contact_wires):
+            self._arms(number)
+        self._supports()
+
+    def at(self, wire: int, node: int, axis: int) -> int:
+        """Number of a coordinate."""
+        return self.width * (int(self.mesh.first_nodes[wire]) + node) + axis
+
+    def _ends(self) -> None:
+        """Contact and messenger wires are fixed along the track at the first node, pulled at the last."""
+        for number, kind in enumerate(wire_kinds(self.catenary, self.mesh)[: self.mesh.first_stitch]):
+            self.fixed[self.at(number, 0, 0)] = True
+            self.force[self.at(number, self.mesh.wires[number].x.size - 1, 0)] += kind.tension
+
+    def _stitch_wires(self) -> None:
+        mesh = self.mesh
+        for i, clamps in enumerate(mesh.stitch_ends.tolist()):
+            number = mesh.first_stitch + i
+            for node, clamp in zip((0, mesh.wires[number].x.size - 1), clamps, strict=True):
+                for axis in range(self.axes):
+                    self.leader[self.at(number, node, axis)] = self.at(mesh.contact_wires, clamp, axis)
+
+    def _spring(self, at: int, stiffness: float, damping: float, preload: float) -> None:
+        self.stiffness[at] += stiffness
+        self.damping[at] += damping
+        self.force[at] += preload
+
+    def _arms(self, number: int) -> None:
+        """Steady arms; at the line's ends the wire is held where it is."""
+        last, up = len(self.catenary.supports) - 1, self.axes - 1
+        for i, support in enumerate(self.catenary.supports):
+            node, arm = int(self.mesh.wires[number].supports[i]), support.steady_arm
+            force = self.installation.arm_forces[number, i]
+            sideways = [self.at(number, node, axis) for axis in range(1, up)]
+            at_end = i in (0, last)
+            if at_end or (arm and arm.length is None):
+                self.fixed[sideways] = True
+            if at_end:
+                self.fixed[self.at(number, node, up)] = True
+            elif arm and arm.stiffness is not None:
+                self._spring(self.at(number, node, up), arm.stiffness, arm.damping, float(force[-1]))
+            elif arm and arm.length is not None:
+                self._bar(number, node, arm.length, force)
+
+    def _bar(self, number: int, node: int, length: float, force: Floats) -> None:
+        """A stiff spring to a pivot that lies where the force on the wire points to."""
+        pull = float(np.linalg.norm(force))
+        pivot = self.installation.lines[number].points[node] + length * np.array([0.0, *force]) / pull
+        self._bars.append((self.at(number, node, 0), pivot, length - pull / LINK_STIFFNESS))
+
+    def _supports(self) -> None:
+        last, up, wire = len(self.catenary.supports) - 1, self.axes - 1, self.mesh.contact_wires
+        for i, support in enumerate(self.catenary.supports):
+            node = int(self.mesh.messenger.supports[i])
+            springs = {up: (support.messenger_stiffness, support.messenger_damping)}
+            if up > 1:
+                springs[1] = (support.messenger_lateral_stiffness, support.messenger_lateral_damping)
+            for axis, (stiffness, damping) in springs.items():
+                at = self.at(wire, node, axis)
+                if i in (0, last) or stiffness is None:
+                    self.fixed[at] = True
+                else:
+                    self._spring(at, stiffness, damping, float(self.installation.support_forces[i, axis - 1]))
+
+    def bars(self) -> Springs:
+        """The steady arms that are bars."""
+        count = len(self._bars)
+        return Springs(
+            first=np.array([first for first, _, _ in self._bars], dtype=np.int64),
+            last=np.full(count, FIXED, dtype=np.int64),
+            pivot=np.array([pivot for _, pivot, _ in self._bars], dtype=float).reshape(count, self.axes),
+            length=np.array([length for _, _, length in self._bars], dtype=float),
+            stiffness=np.full(count, LINK_STIFFNESS),
+            damping=np.zeros(count),
+            pulls_only=False,
+        )
+
+    def place(self, lines: Sequence[WireLine]) -> Integers:
+        """Numbers of the free coordinates in the order of their stations, FIXED for those that are held."""
+        station = np.concatenate([np.repeat(line.x, self.width) for line in lines])
+        leads = (self.leader == np.arange(self.leader.size)) & ~self.fixed
+        free = np.flatnonzero(leads)
+        order = free[np.argsort(station[free], kind="stable")]
+        place = np.full(self.leader.size, FIXED, dtype=np.int64)
+        place[order] = np.arange(order.size)
+        return np.where(self.fixed, FIXED, place[self.leader])

@@ -1,0 +1,51 @@
+"""What an engineer writes down: wires, droppers, supports, spans, pantographs; files and the library."""
+
+from catenary_fe.layout import library
+from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
+from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
+from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.pantograph import (
+    AerodynamicForce,
+    AnyPantograph,
+    ElasticPantograph,
+    Panhead,
+    Pantograph,
+    Stage,
+)
+from catenary_fe.layout.parameters import GRAVITY
+from catenary_fe.layout.preflight import layout_warnings
+from catenary_fe.layout.span import Span
+from catenary_fe.layout.support import SteadyArm, Support
+from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+
+__all__ = [
+    "GRAVITY",
+    "AerodynamicForce",
+    "AnyPantograph",
+    "Catenary",
+    "CatenaryError",
+    "Dropper",
+    "ElasticPantograph",
+    "InputError",
+    "Panhead",
+    "Pantograph",
+    "PowerSystem",
+    "RayleighDamping",
+    "RunInterrupted",
+    "SolverError",
+    "Span",
+    "Stage",
+    "SteadyArm",
+    "StitchWire",
+    "Support",
+    "Wire",
+    "counted",
+    "layout_schema",
+    "layout_warnings",
+    "library",
+    "load_catenary",
+    "load_pantograph",
+    "pantograph_schema",
+    "target_mean_force",
+]

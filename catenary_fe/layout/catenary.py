@@ -1,0 +1,337 @@
+"""The catenary as an engineer describes it: spans, supports, wires, damping."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property, wraps
+from math import tan
+from typing import Annotated, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.catenary_rules import catenary_faults
+from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.parameters import (
+    GRAVITY,
+    NonEmpty,
+    NonNegative,
+    Parameters,
+    Positive,
+    Text,
+    refuse,
+)
+from catenary_fe.layout.span import Span
+from catenary_fe.layout.support import SteadyArm, Support
+from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+
+
+def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
+    """A property that is computed once, an array that nobody can change in place."""
+
+    @wraps(function)
+    def compute(catenary: Any) -> NDArray[Any]:
+        array = function(catenary)
+        array.setflags(write=False)
+        return array
+
+    return cached_property(compute)
+
+
+class RayleighDamping(Parameters):
+    """Damping matrix α M + β K of the wires: contact, messenger and stitch wires.
+
+    M is the mass of the wires alone, without clamps, droppers and arms. K is their stiffness about the static
+    state, of EA, EI and the tension. On a taut dropper β acts too: it damps with β k beside its own damping.
+    Neither acts on the springs and links of supports and steady arms, which have dampers of their own
+    (`messenger_damping`, `messenger_lateral_damping`, `steady_arm.damping`), nor on pantographs and contact.
+    Programs that take β K of the whole line, springs of arms included, damp more.
+    """
+
+    alpha: NonNegative = 0.0
+    """[1/s] share of the wires' mass matrix"""
+    beta: NonNegative = 0.0
+    """[s] share of the stiffness matrix of wires and taut droppers"""
+
+
+class Catenary(Parameters):
+    """One tension section of a catenary: contact wire (or two), messenger wire, perhaps stitch wires.
+
+    x runs along the track from the first support, y to the left of the track's centre, z upwards from the
+    rail. Contact and messenger wires end on the first and the last support: fixed at the first, tensioned by
+    weights (free to move along the track) at the last.
+    """
+
+    name: Text = "catenary"
+    """what is drawn and printed as title"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    contact_wire: Wire
+    """the wire that the pantograph touches"""
+    messenger_wire: Wire
+    """the wire that carries the droppers"""
+    contact_wire_spacing: Positive | None = None
+    """[m] sideways between two equal contact wires; unset: one contact wire"""
+    stitch_wire: StitchWire | None = None
+    """at each support between the line's ends; unset: none"""
+    spans: Annotated[tuple[Span, ...], NonEmpty]
+    """one after the other; they may all differ"""
+    supports: tuple[Support, ...]
+    """one more than spans"""
+    contact_wire_height: Positive = 5.3
+    """[m] nominal, above the rail"""
+    system_height: Positive = 1.2
+    """[m] between messenger wire and contact wire at the supports"""
+    damping: RayleighDamping = RayleighDamping()
+    """of wires and taut droppers"""
+    evaluated_spans: tuple[int, ...] | None = None
+    """numbers of the spans (from 1) over which statistics are taken; unset: the middle third"""
+    spatial: bool | None = None
+    """true: modelled in space; unset: where stagger, curves or links leave the vertical plane"""
+
+    @model_validator(mode="after")
+    def _counts(self) -> Self:
+        if len(self.supports) != len(self.spans) + 1:
+            raise ValueError(
+                f"{counted(len(self.supports), 'support')} for {counted(len(self.spans), 'span')}: there must"
+                " be one more support than spans"
+            )
+        refuse(catenary_faults(self))
+        return self
+
+    @classmethod
+    @checked
+    def regular(
+        cls,
+        *,
+        spans: int,
+        span_length: float,
+        droppers: Sequence[Dropper],
+        contact_wire: Wire,
+        messenger_wire: Wire,
+        support: Support,
+        pre_sag: float = 0.0,
+        stagger: float = 0.0,
+        curve_radius: float | None = None,
+        **others: object,
+    ) -> Self:
+        """A line of equal spans with equal supports.
+
+        spans : number of spans
+        span_length : [m]
+        droppers : of one span, in order
+        pre_sag : [m] of the contact wire at mid-span
+        stagger : [m] of the contact wire, to the left at the first support and then to alternating sides
+        curve_radius : [m] of the track, positive to the left; unset: straight
+        others : further fields of :class:`Catenary`
+
+        Raises InputError where a value breaks a rule.
+        """
+        whole("spans", spans, least=1, most=10_000)
+        number("stagger", stagger, "m")
+        span = Span(length=span_length, droppers=droppers, pre_sag=pre_sag, curve_radius=curve_radius)
+        supports = (support,) * (spans + 1)
+        if stagger and support.stagger:
+            raise InputError(
+                f"stagger = {stagger:g} m, to alternating sides, and support.stagger = {support.stagger:g} m:"
+                " give one of them"
+            )
+        if stagger:
+            supports = tuple(s.replace(stagger=stagger * (-1) ** i) for i, s in enumerate(supports))
+        return cls(
+            contact_wire=contact_wire,
+            messenger_wire=messenger_wire,
+            spans=(span,) * spans,
+            supports=supports,
+            **others,
+        )
+
+    @_fixed_array
+    def support_positions(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,)."""
+        return np.concatenate([[0.0], np.cumsum([span.length for span in self.spans])])
+
+    @property
+    def length(self) -> float:
+        """[m] from the first to the last support."""
+        return float(self.support_positions[-1])
+
+    @cached_property
+    def droppers(self) -> tuple[Dropper, ...]:
+        """All droppers of the line in order."""
+        return tuple(dropper for span in self.spans for dropper in span.droppers)
+
+    @_fixed_array
+    def dropper_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line."""
+        starts = self.support_positions
+        return np.array([starts[i] + d.position for i, s in enumerate(self.spans) for d in s.droppers])
+
+    @_fixed_array
+    def dropper_spans(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of the span, from 1, that each dropper is in."""
+        return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
+
+    @property
+    def gives_dropper_lengths(self) -> bool:
+        """Whether all its droppers have lengths, with which it is hung instead of those of its design."""
+        return bool(self.droppers) and all(d.length is not None for d in self.droppers)
+
+    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
+        """The same line with these dropper lengths, which it is then hung with.
+
+        lengths : [m], shape (droppers,), stress-free
+
+        Raises InputError where their number is another one than the droppers', or one is not a length.
+        """
+        values = numbers("lengths", lengths, shape=(len(self.droppers),)).tolist()
+        return self._with_lengths(values)
+
+    def without_dropper_lengths(self) -> Self:
+        """The same line without dropper lengths of its own: form finding gives it those of the design."""
+        return self._with_lengths([None] * len(self.droppers))
+
+    def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
+        left = iter(lengths)
+        spans = tuple(
+            span.replace(droppers=tuple(d.replace(length=next(left)) for d in span.droppers))
+            for span in self.spans
+        )
+        return self.replace(spans=spans)
+
+    @_fixed_array
+    def design_heights(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
+        return self.contact_wire_height + np.concatenate([s.height_offsets() for s in self.spans])
+
+    @_fixed_array
+    def messenger_support_heights(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
+        heights = [s.system_height or self.system_height for s in self.supports]
+        return self.contact_wire_height + np.array(heights)
+
+    @property
+    def leaves_the_plane(self) -> bool:
+        """Whether stagger, curves or links lie outside the vertical plane."""
+        return any(span.curve_radius for span in self.spans) or any(
+            s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
+            for s in self.supports
+        )
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether the model is one in space; else it lies in the vertical plane."""
+        return self.leaves_the_plane if self.spatial is None else self.spatial
+
+    @property
+    def contact_wire_offsets(self) -> tuple[float, ...]:
+        """[m], of each contact wire to the left of the stagger; the right wire comes first."""
+        half = (self.contact_wire_spacing or 0.0) / 2
+        return (-half, half) if half else (0.0,)
+
+    @_fixed_array
+    def dropper_contact_wires(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
+        wires = len(self.contact_wire_offsets)
+        return np.array(
+            [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(self.droppers)],
+            dtype=np.int64,
+        )
+
+    def has_stitch_wire(self, support: int) -> bool:
+        """Whether one hangs at the support of this number, from 0. Raises InputError for an absent one."""
+        whole("support", support, least=0, most=len(self.supports) - 1)
+        inside = 0 < support < len(self.supports) - 1
+        return bool(self.stitch_wire and inside and self.supports[support].stitch_wire)
+
+    @cached_property
+    def stitched_supports(self) -> tuple[int, ...]:
+        """Numbers of the supports, from 0, that have a stitch wire."""
+        return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
+
+    @_fixed_array
+    def staggers(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
+        return np.array([support.stagger for support in self.supports])
+
+    @_fixed_array
+    def lateral_pulls(self) -> NDArray[np.float64]:
+        """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
+
+        Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
+        """
+        lengths = np.array([span.length for span in self.spans])
+        direction = np.diff(self.staggers) / lengths
+        bend = lengths * np.array([span.curvature for span in self.spans]) / 2
+        pulls = np.zeros(len(self.supports))
+        pulls[1:-1] = np.diff(direction) + bend[:-1] + bend[1:]
+        return self.contact_wire.tension * len(self.contact_wire_offsets) * pulls
+
+    def planar(self) -> Self:
+        """The same line in the vertical plane: no stagger, no curves, links as springs.
+
+        A link under the sideways pull H acts in the plane like a vertical spring of H over its length.
+
+        Raises InputError for a link so short, or pulled so hard, that no spring can stand for it.
+        """
+        if not self.is_spatial:
+            return self
+        supports = tuple(
+            s.replace(
+                stagger=0.0,
+                messenger_stagger=0.0,
+                messenger_lateral_stiffness=None,
+                messenger_lateral_damping=0.0,
+                steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
+            )
+            for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
+        )
+        spans = tuple(span.replace(curve_radius=None) for span in self.spans)
+        return self.replace(spans=spans, supports=supports, spatial=False)
+
+    @property
+    def spans_to_evaluate(self) -> tuple[int, ...]:
+        """Numbers of the spans (from 1) that statistics are taken over."""
+        if self.evaluated_spans:
+            return tuple(sorted(set(self.evaluated_spans)))
+        n = len(self.spans)
+        count = min(max(2, n // 3), max(1, n - 2))  # a run starts in the first span and ends in the last
+        first = (n - count) // 2 + 1
+        return tuple(range(first, first + count))
+
+    def mirrored(self) -> Self:
+        """The mirror image: x runs the other way, left stays left."""
+        wires = iter(self.dropper_contact_wires.tolist())
+        spans = []
+        for span in self.spans:
+            images = [
+                d.replace(
+                    position=span.length - d.position,
+                    contact_wire=next(wires) + 1 if self.contact_wire_spacing else None,
+                )
+                for d in span.droppers
+            ]
+            spans.append(span.replace(droppers=tuple(reversed(images))))
+        n = len(self.spans)
+        evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
+        return self.replace(
+            spans=tuple(reversed(spans)), supports=self.supports[::-1], evaluated_spans=evaluated
+        )
+
+
+def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:
+    if arm.length is None:
+        return arm
+    force = pull * tan(arm.inclination or 0.0) - GRAVITY * (arm.hanging_mass - arm.tip_mass)
+    try:
+        return SteadyArm(
+            stiffness=pull / arm.length,
+            mass=arm.tip_mass,
+            holds_design_height=arm.holds_height,
+            preload=0.0 if arm.holds_height else force,
+        )
+    except InputError as error:
+        where = f"support {support}: the steady arm as a vertical spring of pull over length"
+        raise InputError(*(f"{where}: {line}" for line in error.problems)) from None

@@ -1,0 +1,363 @@
+"""Layouts and pantographs as TOML files, and the JSON Schemas with which an editor completes them."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Annotated, Any, Self, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+
+from catenary_fe.layout import library
+from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.pantograph import AnyPantograph, ElasticPantograph, Pantograph
+from catenary_fe.layout.parameters import (
+    NonEmpty,
+    Number,
+    Parameters,
+    Positive,
+    Sideways,
+    Text,
+    problem_lines,
+    shorten,
+)
+from catenary_fe.layout.span import Span
+from catenary_fe.layout.support import SteadyArm, Support
+from catenary_fe.layout.toml import read_toml
+from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+
+MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
+MOST_DROPPERS = 200_000  # of a line, likewise
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+class WireEntry(Wire):
+    """A wire of its own, or one of the library with some values changed."""
+
+    library: Text | None = None
+    """name of a wire in the library, which fills in the values that are not given"""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=["tension"]))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_in(cls, data: Any) -> Any:
+        if isinstance(data, dict) and isinstance(data.get("library"), str):
+            return library.wire_record(data["library"]) | data
+        return data
+
+    def wire(self) -> Wire:
+        return Wire(**self.model_dump(exclude={"library"}))
+
+
+class StitchWireEntry(StitchWire, WireEntry):
+    """Stitch wires, of the library or of their own."""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update(required=["tension", "length"]))
+
+    def wire(self) -> StitchWire:
+        return StitchWire(**self.model_dump(exclude={"library"}))
+
+
+class DropperEntry(Dropper):
+    """A dropper with values of its own; a bare number is its position."""
+
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: schema.update(
+            {"anyOf": [{"type": "object"}, {"type": "number"}], "type": ["object", "number"]}
+        )
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bare_position(cls, data: Any) -> Any:
+        if isinstance(data, int | float):
+            return {"position": data}
+        if not isinstance(data, dict):
+            raise ValueError(f"{shorten(data)} is neither a position in metres nor a table")
+        return data
+
+
+class DropperDefaults(Dropper):
+    """What all droppers of the line have in common."""
+
+    position: Number = Field(default=0.0, exclude=True, json_schema_extra={"deprecated": True})
+    """not used here: each span lists the positions"""
+
+    @model_validator(mode="after")
+    def _no_position(self) -> DropperDefaults:
+        if "position" in self.model_fields_set:
+            raise ValueError("a position belongs to a span's list of droppers, not to the common values")
+        return self
+
+
+class SpanEntry(Span):
+    """One span, or several equal ones."""
+
+    droppers: tuple[DropperEntry, ...]
+    """positions in metres from the span's first support, or tables for droppers with values of their own"""
+    count: Annotated[int, Field(strict=True, ge=1, le=10_000)] = 1
+    """how many spans like this follow one another"""
+
+
+class SteadyArmEntry(SteadyArm):
+    """How one support's steady arm differs: keys that are not given stay as all supports have them.
+
+    A `length` where the others have a `stiffness`, or the reverse, makes an arm of the other kind: of theirs
+    it then keeps the `uplift_room` alone.
+    """
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        return self  # judged when it is whole
+
+    @model_validator(mode="after")
+    def _link_has_a_height(self) -> Self:
+        return self
+
+    def beside(self, common: SteadyArm | None) -> SteadyArm:
+        """The whole arm. Raises InputError where the two do not make one."""
+        own = {name: getattr(self, name) for name in self.model_fields_set}
+        kept: dict[str, Any] = common.model_dump() if common else {}
+        for kind, other in (("length", "stiffness"), ("stiffness", "length")):
+            if kind in own and other not in own and kept.get(other) is not None:
+                kept = {"uplift_room": kept["uplift_room"]}
+        if own.get("holds_design_height"):
+            kept.pop("preload", None)  # of arms that do not hold it
+        return SteadyArm(**(kept | own))
+
+
+class SupportEntry(Support):
+    """A support that differs from the others; keys that are not given stay as all supports have them."""
+
+    steady_arm: SteadyArmEntry | None = None
+    """registration of the contact wire, as far as it differs"""
+    at: Annotated[int, Field(strict=True, ge=1)]
+    """number of the support, from 1; support n stands before span n"""
+
+    @model_validator(mode="after")
+    def _damping_needs_a_spring(self) -> Self:
+        return self  # judged beside what all supports have
+
+    def beside(self, common: Support) -> Support:
+        """The whole support. Raises InputError where the two do not make one."""
+        changes = {name: getattr(self, name) for name in self.model_fields_set - {"at"}}
+        if self.steady_arm:
+            changes["steady_arm"] = self.steady_arm.beside(common.steady_arm)
+        return common.replace(**changes)
+
+
+class LayoutFile(Parameters):
+    """A catenary layout, as it is written in a TOML file."""
+
+    model_config = ConfigDict(title="catenary_fe layout")
+
+    name: Text
+    """what is drawn and printed as title"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    contact_wire: WireEntry
+    """the wire that the pantograph touches"""
+    messenger_wire: WireEntry
+    """the wire that carries the droppers"""
+    contact_wire_spacing: Positive | None = None
+    """[m] sideways between two equal contact wires; unset: one contact wire"""
+    stitch_wire: StitchWireEntry | None = None
+    """at each support between the line's ends; unset: none"""
+    stagger: Sideways = 0.0
+    """[m] of the contact wire at the supports, to the left at the first and then to alternating sides; a
+    support that differs may say so"""
+    curve_radius: Number | None = None
+    """[m] of the track in spans that do not say otherwise, positive to the left; unset: straight"""
+    dropper: DropperDefaults = DropperDefaults()
+    """values that all droppers have in common"""
+    support: Support = Support()
+    """values that all supports have in common"""
+    supports: tuple[SupportEntry, ...] = ()
+    """supports that differ"""
+    span: Annotated[tuple[SpanEntry, ...], NonEmpty]
+    """the spans in order"""
+    contact_wire_height: Positive = 5.3
+    """[m] nominal, above the rail"""
+    system_height: Positive = 1.2
+    """[m] between messenger wire and contact wire at the supports"""
+    damping: RayleighDamping = RayleighDamping()
+    """of wires and taut droppers"""
+    evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
+    """numbers of the spans (from 1) for the statistics; unset: the middle third"""
+    spatial: Annotated[bool, Field(strict=True)] | None = None
+    """true: modelled in space; unset: where stagger, curves or links leave the vertical plane"""
+
+    def catenary(self) -> Catenary:
+        """The catenary that the file describes. Raises InputError."""
+        self._check_size()
+        spans = tuple(span for entry in self.span for span in (self._span(entry),) * entry.count)
+        supports, faults = self._all_supports(len(spans) + 1)
+        try:
+            catenary = Catenary(
+                name=self.name,
+                source=self.source,
+                contact_wire=self.contact_wire.wire(),
+                messenger_wire=self.messenger_wire.wire(),
+                contact_wire_spacing=self.contact_wire_spacing,
+                stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
+                spans=spans,
+                supports=supports,
+                contact_wire_height=self.contact_wire_height,
+                system_height=self.system_height,
+                damping=self.damping,
+                evaluated_spans=self.evaluated_spans,
+                spatial=self.spatial,
+            )
+        except InputError as error:
+            faults += error.problems
+        if faults:
+            raise InputError(*faults)
+        return catenary
+
+    def _check_size(self) -> None:
+        """Raises InputError before a slip in a count fills the memory."""
+        spans = sum(entry.count for entry in self.span)
+        droppers = sum(entry.count * len(entry.droppers) for entry in self.span)
+        for count, what, most in ((spans, "spans", MOST_SPANS), (droppers, "droppers", MOST_DROPPERS)):
+            if count > most:
+                raise InputError(
+                    f"span: {count:,} {what} in all: must be at most {most:,}; look at the counts"
+                )
+
+    def _all_supports(self, count: int) -> tuple[tuple[Support, ...], list[str]]:
+        """The common support with the differing ones in their places, and what is wrong with those."""
+        sides = [self.stagger * (-1) ** i for i in range(count)]
+        supports = [self.support.replace(stagger=y) if self.stagger else self.support for y in sides]
+        faults: list[str] = []
+        if self.stagger and "stagger" in self.support.model_fields_set:
+            faults.append(
+                f"stagger = {self.stagger:g} m, to alternating sides, and support.stagger ="
+                f" {self.support.stagger:g} m: give one of them"
+            )
+        named: set[int] = set()
+        for entry in self.supports:
+            if entry.at > count:
+                faults.append(f"supports: at = {entry.at}: the line has supports 1 to {count}")
+                continue
+            if entry.at in named:
+                faults.append(f"supports: at = {entry.at} is there twice; make one entry of them")
+            named.add(entry.at)
+            try:
+                supports[entry.at - 1] = entry.beside(supports[entry.at - 1])
+            except InputError as error:
+                faults += [f"supports: at = {entry.at}: {line}" for line in error.problems]
+        return tuple(supports), faults
+
+    def _span(self, entry: SpanEntry) -> Span:
+        common = {name: getattr(self.dropper, name) for name in self.dropper.model_fields_set}
+        droppers = tuple(
+            Dropper(**(common | {name: getattr(d, name) for name in d.model_fields_set}))
+            for d in entry.droppers
+        )
+        own_radius = "curve_radius" in entry.model_fields_set
+        return Span(
+            length=entry.length,
+            droppers=droppers,
+            pre_sag=entry.pre_sag,
+            curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+        )
+
+
+@checked
+def load_catenary(path: str | Path) -> Catenary:
+    """Read a layout file (TOML).
+
+    Raises InputError, one line for each fault that the file has.
+    """
+    path = Path(path)
+    record = read_toml(path, "layout")
+    try:
+        return LayoutFile.model_validate(record).catenary()
+    except ValidationError as error:
+        lines = [*fault_lines(error, record), *_further_faults(record, error)]
+    except InputError as error:
+        lines = list(error.problems)
+    raise InputError(*(f"{path}: {line}" for line in lines)) from None
+
+
+def fault_lines(error: ValidationError, record: dict[str, Any]) -> list[str]:
+    """One line for each fault of a layout as it is written, by the numbers of spans and supports on site."""
+    names = _numbers_on_site(record)
+    found = [(line, re.match(r"(?:supports|span) \d+", line)) for line in problem_lines(error, LayoutFile)]
+    return [names.get(m[0], m[0]) + line[m.end() :] if m else line for line, m in found]
+
+
+def _numbers_on_site(record: dict[str, Any]) -> dict[str, str]:
+    """Names of entries in lists: by the support, or by the first of the spans that they stand for."""
+    names, first = {}, 1
+    for n, entry in enumerate(_entries(record, "supports"), start=1):
+        at = entry.get("at")
+        names[f"supports {n}"] = f"supports: at = {at}" if type(at) is int else f"entry {n} of [[supports]]"
+    for n, entry in enumerate(_entries(record, "span"), start=1):
+        if first != n:
+            names[f"span {n}"] = f"span {first} (entry {n} of [[span]])"
+        count = entry.get("count", 1)
+        first += count if type(count) is int else 1
+    return names
+
+
+def _entries(record: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    entries = record.get(key)
+    return [e if isinstance(e, dict) else {} for e in entries] if isinstance(entries, list) else []
+
+
+def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str, ...]:
+    """What would be wrong with the layout if its faulty tables were sound, to be reported together."""
+    faulty = {detail["loc"][0] for detail in error.errors(include_url=False) if detail["loc"]}
+    wire = {"mass_per_length": 1.0, "tension": 1e4, "axial_stiffness": 1e7}
+    stand_ins = {"name": "", "contact_wire": wire, "messenger_wire": wire}
+    try:
+        LayoutFile.model_validate(stand_ins | {k: v for k, v in record.items() if k not in faulty}).catenary()
+    except ValidationError:
+        pass  # the spans themselves are at fault
+    except InputError as further:
+        return further.problems
+    return ()
+
+
+def read_layout(path: str | Path) -> dict[str, Any]:
+    """A layout file as it is written, not checked yet. Raises InputError if it is no TOML file."""
+    return read_toml(Path(path), "layout")
+
+
+@checked
+def load_pantograph(name_or_path: str | Path) -> AnyPantograph:
+    """A pantograph from a TOML file, or from the library by its name.
+
+    A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph.
+
+    Raises InputError, one line for each fault that the file has, or the near names of the library.
+    """
+    path = Path(name_or_path)
+    if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
+        record = read_toml(path, "pantograph")
+        elastic = "stages" not in record and not record.keys().isdisjoint({"force", "stiffness", "law"})
+        return _checked(record, ElasticPantograph, path) if elastic else _checked(record, Pantograph, path)
+    return library.pantograph(str(name_or_path))
+
+
+def layout_schema() -> dict[str, Any]:
+    """JSON Schema of a layout file."""
+    return LayoutFile.model_json_schema()
+
+
+def pantograph_schema() -> dict[str, Any]:
+    """JSON Schema of a pantograph file, of masses or elastic."""
+    return TypeAdapter(AnyPantograph).json_schema() | {"title": "catenary_fe pantograph"}
+
+
+def _checked(record: dict[str, Any], model: type[_Model], path: Path) -> _Model:
+    try:
+        return model.model_validate(record)
+    except ValidationError as error:
+        raise InputError(*problem_lines(error, model, where=str(path))) from None

@@ -1,0 +1,199 @@
+"""The pantograph: a chain of lumped masses on a base that moves along the track, or an elastic force."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal, Self, get_args
+
+from pydantic import field_validator, model_validator
+
+from catenary_fe.layout.arguments import number
+from catenary_fe.layout.current_collection import MeanForceRule, target_mean_force
+from catenary_fe.layout.parameters import (
+    NonEmpty,
+    NonNegative,
+    Number,
+    Parameters,
+    Positive,
+    Text,
+    shorten,
+)
+
+
+class Stage(Parameters):
+    """A mass with the spring and damper below it, which join it to the next stage or to the base."""
+
+    mass: Positive
+    """[kg] of the stage"""
+    stiffness: NonNegative
+    """[N/m] of the spring below the mass"""
+    damping: NonNegative = 0.0
+    """[N s/m] of the damper below the mass"""
+
+
+class AerodynamicForce(Parameters):
+    """Upward force of the air on the lowest mass, a V² + b V."""
+
+    quadratic: Number = 0.0
+    """[N s²/m²] a, times the square of the speed in m/s"""
+    linear: Number = 0.0
+    """[N s/m] b, times the speed in m/s"""
+
+    def at(self, speed: float) -> float:
+        """[N] at a speed in m/s. Raises InputError for what is none."""
+        speed = number("speed", speed, "m/s", least=0.0)
+        return self.quadratic * speed**2 + self.linear * speed
+
+
+class Panhead(Parameters):
+    """The head beyond its mass: its width, a roll of its own, a second collector strip."""
+
+    width: Positive = 1.2
+    """[m] of the part that may touch the wire, half to each side of the track's centre; the default is that
+    of the 1600 mm head (recalled)"""
+    spring_distance: Positive | None = None
+    """[m] sideways between the two springs that share the stiffness below the head, which then rolls on
+    them; unset: a head that stays level"""
+    roll_inertia: Positive | None = None
+    """[kg m²] about the track's direction; unset: that of a uniform bar of the head's width"""
+    strips: Literal[1, 2] = 1
+    """collector strips, one behind the other; two share the head's mass, spring and damper"""
+    strip_distance: Positive | None = None
+    """[m] along the track between two strips"""
+
+    @model_validator(mode="after")
+    def _options_belong_together(self) -> Self:
+        if (self.strips == 2) != (self.strip_distance is not None):
+            raise ValueError("strips = 2 and strip_distance belong together: give both or neither")
+        if self.roll_inertia and self.spring_distance is None:
+            raise ValueError("roll_inertia has no effect without spring_distance; give both or neither")
+        return self
+
+    def rolling_inertia(self, mass: float) -> float:
+        """[kg m²] of a head of this mass [kg]."""
+        return self.roll_inertia or mass * self.width**2 / 12
+
+
+class Pantograph(Parameters):
+    """Lumped masses, head first, pushed up by a constant force on the lowest one.
+
+    The base moves along the track at constant height; its spring is force-free with the head at the nominal
+    contact wire height. Either ``uplift_force`` is given, or a ``mean_force`` that the uplift is set for.
+    """
+
+    name: Text = "pantograph"
+    """what tables and pictures call it"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    stages: Annotated[tuple[Stage, ...], NonEmpty]
+    """masses with the spring and damper below each, head first"""
+    uplift_force: Positive | None = None
+    """[N] constant force on the lowest mass, without the air's"""
+    mean_force: Positive | MeanForceRule | None = None
+    """[N] mean contact force to reach, or the name of an EN 50367 formula"""
+    aerodynamic_force: AerodynamicForce = AerodynamicForce()
+    """of the air, on the lowest mass, added to uplift_force"""
+    contact_stiffness: Positive = 50e3
+    """[N/m] between head and contact wire, no tension"""
+    contact_damping: NonNegative = 0.0
+    """[N s/m] beside the contact stiffness, never pulling"""
+    head: Panhead | None = None
+    """what the head is beyond the first mass; unset: a level head of the usual width with one strip"""
+
+    @field_validator("mean_force", mode="before")
+    @classmethod
+    def _number_or_rule(cls, value: object) -> object:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if value is None or (is_number and value > 0) or value in get_args(MeanForceRule):  # type: ignore[operator]
+            return value
+        rules = ", ".join(f"'{rule}'" for rule in get_args(MeanForceRule))
+        raise ValueError(f"{shorten(value)} is neither a force above 0 N nor one of {rules}")
+
+    @model_validator(mode="after")
+    def _one_force(self) -> Self:
+        if (self.uplift_force is None) == (self.mean_force is None):
+            raise ValueError(
+                "uplift_force and mean_force: give exactly one, the force that pushes the lowest mass up"
+                " or the mean contact force that it shall result in"
+            )
+        if self.mean_force is not None and self.aerodynamic_force != AerodynamicForce():
+            raise ValueError(
+                "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
+                " together; leave it out, or give an uplift_force instead"
+            )
+        return self
+
+    def static_uplift(self, speed: float) -> float:
+        """[N] upward force on the lowest mass at a speed in m/s; for a mean force, the first guess."""
+        if self.uplift_force is not None:
+            return self.uplift_force + self.aerodynamic_force.at(speed)
+        target = self.target_mean_force(speed)
+        assert target is not None
+        return target
+
+    def target_mean_force(self, speed: float) -> float | None:
+        """[N] mean contact force to reach at a speed in m/s; None with a given uplift."""
+        if self.mean_force is None or isinstance(self.mean_force, float):
+            return self.mean_force
+        return target_mean_force(self.mean_force, speed)
+
+
+class ElasticPantograph(Parameters):
+    """A pantograph without masses whose force falls as the wire rises, and never pulls.
+
+    Either linear, F = max(0, force − stiffness · elevation), or by a ``law`` of points. Source: the paper
+    "Selected problems of wave phenomena in catenaries", section 3.1, which leaves the law open.
+    """
+
+    name: Text = "elastic pantograph"
+    """what tables and pictures call it"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    force: Positive | None = None
+    """[N] on a wire at the nominal contact wire height; unset with a `law`"""
+    stiffness: NonNegative = 0.0
+    """[N/m] by which the force falls as the wire rises; 0: a constant force"""
+    law: tuple[tuple[Number, NonNegative], ...] = ()
+    """pairs of elevation [m] above the nominal height and force [N], straight between, constant outside"""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        if (self.force is None) == (not self.law):
+            raise ValueError(
+                "force and law: give exactly one, a force (with its stiffness) or a law of points"
+            )
+        if self.law and self.stiffness:
+            raise ValueError(f"stiffness = {self.stiffness:g} N/m has no effect beside a law; leave it out")
+        for (low, strong), (high, weak) in pairwise(self.law):
+            if high <= low or weak > strong:
+                raise ValueError(
+                    f"law: after {strong:g} N at {low:g} m comes {weak:g} N at {high:g} m; elevations must"
+                    " rise and forces must not"
+                )
+        return self
+
+    def contact_force(self, elevation: float) -> float:
+        """[N] on a wire at an elevation [m] above its nominal height. Raises InputError for what is none."""
+        elevation = number("elevation", elevation, "m")
+        force, stiffness = self.tangent(elevation)
+        return max(0.0, force - stiffness * elevation)
+
+    def tangent(self, elevation: float) -> tuple[float, float]:
+        """F₀ [N] and k [N/m] of the straight law F₀ − k · elevation that holds around an elevation [m]."""
+        if self.force is not None:
+            return self.force, self.stiffness
+        for (low, strong), (high, weak) in pairwise(self.law):
+            if low <= elevation < high:
+                slope = (strong - weak) / (high - low)
+                return strong + slope * low, slope
+        return self.law[0 if elevation < self.law[0][0] else -1][1], 0.0
+
+    def static_uplift(self, speed: float) -> float:
+        """[N] on a wire at its nominal height, at any speed."""
+        return self.contact_force(0.0)
+
+    def target_mean_force(self, speed: float) -> None:
+        """None: the law decides the mean force."""
+
+
+AnyPantograph = Pantograph | ElasticPantograph

@@ -1,0 +1,348 @@
+"""Quality checks: what a finished run must satisfy before its numbers are trusted.
+
+Each guard is a named check with value and bound, computed from the run's own histories and inputs, so that it
+is there for every run, loaded ones too. A guard that cannot be judged on a run is left out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from math import floor, log10, pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.layout import Pantograph
+from catenary_fe.results.check import Check
+from catenary_fe.results.signal import CUT_OFF, spectrum
+
+if TYPE_CHECKING:
+    from catenary_fe.results.run import Run
+
+Floats = NDArray[np.float64]
+
+DEEPEST = 0.010  # [m] of the head in the wire
+STEPS_A_PERIOD = 20  # the trapezoidal rule then lengthens a period by (2π/20)²/12, 0.8 %
+STEPS_AN_ELEMENT = 2  # below it, whole elements are jumped over
+IMBALANCE = 0.005  # of the uplift
+UNBALANCED = 0.02  # of the work done; of sound runs 0.5 % at most is missing, the integrator's own damping
+STAGES_UNBALANCED = 0.003  # of the contact force's work; 0.01 % in sound runs
+DRIFT = 0.03  # of the tension, which moves the wave speed by 1.5 %; pantographs alone change it by 1 %
+TONE = 0.03  # of the mean force
+TONE_BAND = 0.9, 1.15  # of the frequency: elements are of somewhat different lengths
+FINE = 4  # elements from dropper to dropper
+HANN_WIDTH = 1.5  # by which a Hann window widens a line of the spectrum
+REFLECTED = 0.1  # of the uplift at the supports
+SPREAD = 0.2  # of the standard deviation
+SLACK = 0.1  # of the droppers' time
+
+
+def run_checks(run: Run) -> tuple[Check, ...]:
+    """All quality checks that can be judged on a run."""
+    checks: tuple[Callable[[Run], Iterator[Check]], ...] = (
+        _penetration,
+        _force_balance,
+        _pantograph_energy,
+        _energy_balance,
+        _tension_drift,
+        _steps_per_element,
+        _steps_per_period,
+        # those of the evaluated spans come last
+        _element_passing,
+        _end_reflection,
+        _start_transient,
+        _slack_droppers,
+    )
+    if not run.reached:  # of a partial run: what its evaluated spans say is not known
+        checks = checks[:7]
+    return tuple(check for each in checks for check in each(run))
+
+
+def _lumped(run: Run) -> list[tuple[int, Pantograph]]:
+    return [(i, p) for i, p in enumerate(run.pantographs) if isinstance(p, Pantograph)]
+
+
+def _name(run: Run, pantograph: int) -> str:
+    return str(run.data["pantograph"].values[pantograph])
+
+
+def _worst(found: Sequence[tuple[float, str]]) -> tuple[float, str]:
+    """The largest value, and what is said of it; what is not a number is the worst of all."""
+    return max(found, key=lambda item: np.inf if np.isnan(item[0]) else item[0])
+
+
+def _down(value: float) -> str:
+    """Two digits of a positive number, rounded down: what is taken for a bound keeps it."""
+    unit = 10.0 ** (floor(log10(value)) - 1)
+    return f"{floor(value / unit + 1e-9) * unit:.2g}"
+
+
+def _penetration(run: Run) -> Iterator[Check]:
+    """The contact spring stands for a hard contact: 50 kN/m gives by 4 mm under 200 N, by 10 mm under 500 N.
+
+    What goes deeper is a spring so soft that it changes the result, or an impact that no head survives.
+    """
+    found = []
+    for i, pantograph in _lumped(run):
+        depth = run.data["mass_height"].values[i, 0] - run.data["wire_height"].values[i]
+        x, force = (float(run.data[n].values[i, depth.argmax()]) for n in ("position", "contact_force"))
+        span = int(np.searchsorted(run.data["support_position"].values, x))
+        text = (
+            f"so deep the head of {_name(run, i)} goes into the wire at {x:.1f} m (span {span}), under"
+            f" {force:.0f} N; raise contact_stiffness from {pantograph.contact_stiffness:g} N/m, or find what"
+            " the head hits there"
+        )
+        found.append((1e3 * float(depth.max()), text))
+    if found:
+        value, text = _worst(found)
+        yield Check("penetration", value, "mm", "at most", 1e3 * DEEPEST, text)
+
+
+def _force_balance(run: Run) -> Iterator[Check]:
+    """Newton's law over the whole run: uplift, base spring and damper, less the contact force, is momentum.
+
+    The histories are those of the steps' ends; what is left of a sound run is the rounding of the last
+    velocity, far below half a per cent of the uplift (0.02 % at most in the EN 50318:2002 runs).
+    """
+    if run.time.size < 3:
+        return
+    found = []
+    for i, pantograph in _lumped(run):
+        force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
+        masses, heights = _chain(run, i, pantograph)
+        base = heights[-1] - run.catenary.contact_wire_height
+        lowest, duration, grounded = pantograph.stages[-1], float(run.time[-1]), len(pantograph.stages) == 1
+        if grounded:  # strips that share the only spring
+            base = heights.mean(axis=0) - run.catenary.contact_wire_height
+        pushed = np.trapezoid(uplift - force - lowest.stiffness * base, dx=run.step)
+        pushed -= lowest.damping * (base[-1] - base[0])
+        velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
+        gained = masses @ velocity
+        found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
+    if found:
+        value, name = _worst(found)
+        text = (
+            f"share of the uplift force of {name} by which the forces on it and its momentum do not agree;"
+            " take a smaller time step or tolerance"
+        )
+        yield Check("force balance", value, "%", "at most", 100 * IMBALANCE, text)
+
+
+def _chain(run: Run, number: int, pantograph: Pantograph) -> tuple[Floats, Floats]:
+    """Masses [kg] of a pantograph, strips first, and their heights [m], shape (masses, times)."""
+    strips = pantograph.head.strips if pantograph.head else 1
+    first, *others = pantograph.stages
+    masses = np.array([first.mass / strips] * strips + [stage.mass for stage in others])
+    heights: Floats = run.data["mass_height"].values[number, : masses.size]
+    return masses, heights
+
+
+def _pantograph_energy(run: Run) -> Iterator[Check]:
+    """Uplift and contact force work on the stages; springs store it, dampers take it, masses move with it.
+
+    From the histories alone, so that it is there whatever integrated the run. Work of a step is the mean of a
+    force at its ends along the displacement. Of heads with several strips, or that roll, the single forces
+    are not known.
+    """
+    found = []
+    for i, pantograph in _lumped(run):
+        head = pantograph.head
+        rolls = run.catenary.is_spatial and head and head.spring_distance
+        if run.time.size < 5 or rolls or (head and head.strips > 1):
+            continue
+        masses, heights = _chain(run, i, pantograph)
+        force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
+        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - run.catenary.contact_wire_height])
+        stiffness = np.array([stage.stiffness for stage in pantograph.stages])
+        damping = np.array([stage.damping for stage in pantograph.stages])
+        moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
+        pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
+        lost = damping @ np.diff(joints) ** 2 / run.step
+        stored = (masses @ velocity**2 + stiffness @ joints**2) / 2
+        balance = np.cumsum(pushed + uplift * moved[-1] - lost) - (stored[1:] - stored[0])
+        share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
+        found.append((100 * float(share), _name(run, i)))
+    if found:
+        value, name = _worst(found)
+        text = (
+            f"share of the contact force's work on {name} that its springs, dampers and masses do not account"
+            " for; take a smaller time step"
+        )
+        yield Check("pantograph energy", value, "%", "at most", 100 * STAGES_UNBALANCED, text)
+
+
+def _energy_balance(run: Run) -> Iterator[Check]:
+    """Work of uplift forces and moving bases, less what dampers take, is stored and kinetic energy.
+
+    Of the whole system, where the run recorded it: all nonlinear runs do. What is missing of a sound run went
+    into the integrator's own damping: up to 0.2 % at 1 ms, 0.5 % at 2 ms.
+    """
+    if not run.has_energy:
+        return
+    missing, work = np.abs(run.missing_energy).max(), np.abs(run.data["driven_work"].values).max()
+    for i, pantograph in _lumped(run):  # the energy's potential has the uplift's work in it
+        lowest = _chain(run, i, pantograph)[1][-1]
+        work += float(run.data["uplift_force"].values[i]) * np.abs(lowest - lowest[0]).max()
+    text = "share of the work on wires and pantographs that is missing; take a smaller time step or tolerance"
+    share = 100 * float(missing / max(work, 1e-9))
+    yield Check("energy balance", share, "%", "at most", 100 * UNBALANCED, text)
+
+
+def _tension_drift(run: Run) -> Iterator[Check]:
+    """Weights keep the tension of contact and messenger wires, whatever happens between the supports.
+
+    A passing pantograph changes the mean tension of a span by less than 1 %. Stitch wires, which no weight
+    keeps, change by 6 % and are not judged.
+    """
+    if "tension_change" in run.data:
+        names = [str(name) for name in run.data["wire"].values if not str(name).startswith("stitch")]
+        changes = run.data["tension_change"].values[: len(names)]
+        wire, reading = np.unravel_index(changes.argmax(), changes.shape)
+        span = int(run.data["tension_span"].values[wire, reading])
+        text = (
+            f"change of the {names[wire].replace('_', ' ')}'s tension in span {span} since the start, at"
+            f" {float(run.data['tension_time'].values[reading]):.2f} s; look for what holds the wire along"
+            " the track there"
+        )
+        share = 100 * float(changes[wire, reading])
+        yield Check("tension drift", share, "%", "at most", 100 * DRIFT, text)
+
+
+def _mesh(run: Run) -> dict[str, float]:
+    return dict(json.loads(run.data.attrs["settings"]).get("mesh", {}))
+
+
+def _element_passing(run: Run) -> Iterator[Check]:
+    """A wire gives a little more in an element than at its nodes: passing elements sound a tone.
+
+    Above the evaluated band it is filtered away. In slow runs it lies inside; of a mesh with several elements
+    from dropper to dropper the tone itself is then judged, as part of the filtered force: at 3 % of the mean
+    it adds that much to σ at the very most, and 0.15 % to one at its limit of 30 %. Four published lines at
+    30 to 90 km/h with elements of 1.3 m have up to 2.3 %; σ is then 0.25 N off where it is 5 N. The study of
+    meshes has what longer elements do: 2 m at 300 km/h, 42 Hz.
+    """
+    longest = _mesh(run).get("contact_wire_element")
+    if not longest:
+        return
+    frequency, catenary = run.speed / longest, run.catenary
+    clamps = np.unique(np.concatenate([catenary.dropper_positions, catenary.support_positions]))
+    if frequency >= CUT_OFF or FINE * longest > np.median(np.diff(clamps)):
+        text = (
+            f"at this rate elements of {longest:g} m are passed, inside the filter's band: the force has a"
+            f" tone of the mesh; take elements of at most {_down(run.speed / CUT_OFF)} m (--element-m)"
+        )
+        yield Check("element-passing frequency", frequency, "Hz", "at least", CUT_OFF, text)
+        return
+    found = []
+    for i, force in enumerate(run.filtered_contact_force()):
+        inside = force[run.window(i)]
+        of_line, amplitude = spectrum(inside, run.step)
+        band = (of_line > TONE_BAND[0] * frequency) & (of_line < TONE_BAND[1] * frequency)
+        rms = sqrt(float((amplitude[band] ** 2).sum()) / 2 / HANN_WIDTH)
+        found.append((100 * rms / max(abs(float(inside.mean())), 1e-9), _name(run, i)))
+    value, name = _worst(found)
+    text = (
+        f"share of the mean force of {name}, as elements of {longest:g} m are passed at {frequency:.1f} Hz;"
+        " take shorter ones (--element-m)"
+    )
+    yield Check("element-passing tone", value, "%", "at most", 100 * TONE, text)
+
+
+def _steps_per_element(run: Run) -> Iterator[Check]:
+    """Each element must see the pantograph."""
+    mesh = _mesh(run)
+    if mesh:
+        shortest = min(mesh["at_clamps"], mesh["contact_wire_element"])
+        steps = shortest / (run.speed * run.step)
+        text = (
+            f"a pantograph moves {run.speed * run.step:.2g} m a step, over elements of {shortest:g} m; take a"
+            f" time step of at most {_down(1e3 * shortest / run.speed / STEPS_AN_ELEMENT)} ms"
+        )
+        yield Check("steps in an element", steps, "", "at least", STEPS_AN_ELEMENT, text)
+
+
+def _steps_per_period(run: Run) -> Iterator[Check]:
+    """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
+    found = [(CUT_OFF, "the filter's cut-off")]
+    for i, p in _lumped(run):
+        resonance = sqrt(p.contact_stiffness / p.stages[0].mass) / (2 * pi)
+        found.append((resonance, f"the resonance of the head of {_name(run, i)} on its contact spring"))
+    highest, what = max(found)
+    text = (
+        f"in a period of {highest:.1f} Hz, {what}; take a time step of at most"
+        f" {_down(1e3 / highest / STEPS_A_PERIOD)} ms"
+    )
+    yield Check("time steps in a period", 1 / (highest * run.step), "", "at least", STEPS_A_PERIOD, text)
+
+
+def _end_reflection(run: Run) -> Iterator[Check]:
+    """What runs ahead to the line's end comes back; no real line ends there.
+
+    Judged is the motion at the support before the end, early enough to be back at a pantograph, at the speed
+    of the faster wire, before that leaves the evaluated spans. Supports and droppers hold most waves back: a
+    slow train meets the front several times and hardly feels it, so that the time of its return alone says
+    nothing. (EN 50318:2002 at 40 to 120 km/h, span 3 evaluated: with one span behind it 37 % or more, and σ
+    up to 6 % off; with two or more, 9 % at most, and σ as close as that of long lines to each other.)
+    """
+    catenary, start = run.catenary, run.data["position"].values[:, 0]
+    fastest = max(catenary.contact_wire.wave_speed, catenary.messenger_wire.wave_speed)
+    end = float(catenary.support_positions[max(run.evaluated_spans)])
+    leaving = (end - start.min()) / run.speed
+    behind = catenary.length - end + catenary.spans[-1].length  # from the last but one support and back
+    moved = np.abs(run.data["support_uplift"].values[-2, run.time <= leaving - behind / fastest])
+    share = float(moved.max(initial=0.0)) / max(run.largest_support_uplift(), 1e-6)
+    text = (
+        "share of the largest uplift that reaches the line's last support but one early enough to be back"
+        f" before the evaluated spans end at {end:g} m; add spans behind span {max(run.evaluated_spans)}, or"
+        " evaluate earlier ones"
+    )
+    yield Check("end reflection", 100 * share, "%", "at most", 100 * REFLECTED, text)
+
+
+def _start_transient(run: Run) -> Iterator[Check]:
+    """Equal spans far from the start have equal forces: what is left of the start differs from span to span.
+
+    Compared are the standard deviations in neighbouring equal spans, the one before the evaluated ones
+    included where the run passes all of it; their difference is a share of the mean one.
+    """
+    catenary, first = run.catenary, min(run.evaluated_spans)
+    started = float(run.data["position"].values[:, 0].max())
+    numbers = sorted(run.evaluated_spans)
+    if first > 1 and catenary.support_positions[first - 2] >= started and len(numbers) == 1:
+        numbers = [first - 1, *numbers]
+    equal = [
+        (a, b) for a, b in pairwise(numbers) if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1]
+    ]
+    if not equal:
+        return
+    found = []
+    for a, b in equal:
+        for s, t in zip(run.contact_force_statistics([a]), run.contact_force_statistics([b]), strict=True):
+            text = (
+                f"so far σ of {s.pantograph} in the equal spans {a} and {b} differs, {s.std:.1f} and"
+                f" {t.std:.1f} N: what is left of the start or comes back from the end is still there;"
+                " evaluate spans further from both"
+            )
+            found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
+    value, text = _worst(found)
+    yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
+
+
+def _slack_droppers(run: Run) -> Iterator[Check]:
+    """A passing pantograph slackens the droppers near it for a moment; more is a wire that is not carried."""
+    spans = run.data["dropper_span"].values
+    inside = np.flatnonzero(np.isin(spans, run.evaluated_spans))
+    if not inside.size:
+        return
+    slack = (run.data["dropper_force"].values[inside] <= 0).mean(axis=1)
+    longest = int(inside[slack.argmax()])
+    number = longest - int(np.searchsorted(spans, spans[longest])) + 1
+    text = (
+        "share of the time that droppers of the evaluated spans are slack, longest dropper"
+        f" {number} of span {spans[longest]} with {100 * slack.max():.0f} %; look at the uplift and at the"
+        " droppers' lengths"
+    )
+    yield Check("slack droppers", 100 * float(slack.mean()), "%", "at most", 100 * SLACK, text)

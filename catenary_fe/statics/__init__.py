@@ -1,0 +1,7 @@
+"""Form finding: dropper lengths and the static shape."""
+
+from catenary_fe.statics.form_finding import find_form, find_heights
+from catenary_fe.statics.schedules import ArmRow, DropperRow, SupportRow
+from catenary_fe.statics.shape import HangingWire, Shape
+
+__all__ = ["ArmRow", "DropperRow", "HangingWire", "Shape", "SupportRow", "find_form", "find_heights"]

@@ -1,0 +1,313 @@
+"""The line under static forces on its contact wire, in large motions and with droppers that go slack."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.cable import Cables, hermite, inner_forces, tangent_blocks
+from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.system import System, assemble
+from catenary_fe.layout import SolverError
+from catenary_fe.statics.shape import Shape
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Progress = Callable[[float], None]
+
+_ITERATIONS, _LEAST_STEP, _LOAD_STEPS = 60, 1e-4, 20
+_SETTLED = 1e-9  # of the largest force on a coordinate; rounding of EA ε leaves 1e-5 N
+_FLOOR = 1e-4  # [N]
+_NEAR, _FAR = 1, 2  # spans beside that of a force; what is left out there moves a lift by up to 4e-4
+_NARROW: dict[str, Any] = {  # in the order of the stations the factor is narrow
+    "permc_spec": "NATURAL",
+    "diag_pivot_thresh": 0.0,
+    "options": {"SymmetricMode": True},
+}
+_CORRECTIONS, _SAME = 12, 1e-4  # of a lift: change of the last correction
+
+
+class LoadedLine:
+    """A line at rest that is loaded and solved for, again and again. Two contact wires share each force."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.shape = shape
+        self.system: System = assemble(shape.catenary, shape.mesh, shape.installation)
+
+    def at(self, x: float) -> tuple[Integers, Floats]:
+        """Coordinates at a place [m] along the line, and how a height there is made of them.
+
+        Shape (contact wires, 4) both: height and vertical slope of the two nodes about it.
+        """
+        mesh, axes = self.shape.mesh, self.system.axes
+        index, weights = [], []
+        for number, line in enumerate(self.shape.installation.lines[: mesh.contact_wires]):
+            stations = mesh.wires[number].x
+            e = min(max(int(np.searchsorted(stations, x, side="right")) - 1, 0), stations.size - 2)
+            first = 2 * axes * (int(mesh.first_nodes[number]) + e) + axes - 1
+            index.append(first + axes * np.arange(4))
+            share = (x - stations[e]) / (stations[e + 1] - stations[e])
+            weights.append(hermite(share, line.lengths[e]) / mesh.contact_wires)
+        return np.array(index), np.array(weights)
+
+    def load(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
+        """[N], shape (all,): upward forces [N] at places [m] along the line."""
+        load = np.zeros(self.system.place.size)
+        for x, force in zip(positions, forces, strict=True):
+            index, weights = self.at(float(x))
+            np.add.at(load, index, float(force) * weights)
+        return load
+
+    def solve(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
+        """Displacements, shape (all,), under upward forces [N] at places [m] along the line.
+
+        Raises SolverError, with the place, if no equilibrium is found.
+        """
+        load = self.load(positions, forces)
+        moved, residual = self._newton(np.zeros_like(load), load)
+        for step in range(1, _LOAD_STEPS + 1) if residual is not None else ():
+            moved, residual = self._newton(moved if step > 1 else 0 * moved, load * step / _LOAD_STEPS)
+            if residual is not None:
+                break
+        if residual is None:
+            return moved
+        what = ", ".join(f"{f:g} N at {x:g} m" for x, f in zip(positions, forces, strict=True))
+        raise SolverError(
+            f"static load ({what}): no static equilibrium found, neither at once nor in {_LOAD_STEPS} steps"
+            f" of the load: {np.abs(residual).max():.3g} N are left {self._place(residual)}; try a smaller"
+            " force, and look there for stiffnesses and tensions that are far from usual values"
+        )
+
+    def _newton(self, moved: Floats, load: Floats) -> tuple[Floats, Floats | None]:
+        """Displacements, and what is left out of balance if that is too much, shape (all,).
+
+        Newton's method on the energy, the step shortened where it would raise it.
+        """
+        from scipy.sparse.linalg import splu
+
+        system = self.system
+        floor = max(_FLOOR, _SETTLED * float(np.abs(system.force + load).max()))
+        for _ in range(_ITERATIONS):
+            residual = system.gather(system.out_of_balance(moved) + load)
+            if not np.isfinite(residual).all():
+                break
+            if np.abs(residual).max() <= floor:
+                return moved, None
+            try:
+                step = splu(system.tangent(moved, taut=False).tocsc()).solve(residual)
+            except RuntimeError:  # singular
+                break
+            energy, slope = system.energy(moved) - load @ moved, float(residual @ step)
+            share = 1.0
+            while share > _LEAST_STEP:
+                trial = moved + share * system.spread(step)
+                rise = system.energy(trial) - load @ trial - energy
+                if rise <= -1e-4 * share * slope + 1e-11 * abs(energy):
+                    break
+                share /= 2
+            moved = moved + share * system.spread(step)
+        return moved, system.spread(system.gather(system.out_of_balance(moved) + load))
+
+    def _place(self, residual: Floats) -> str:
+        """Where most is out of balance, in words."""
+        mesh = self.shape.mesh
+        worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax()) // (2 * self.system.axes)
+        wire = int(np.searchsorted(mesh.first_nodes, worst, side="right")) - 1
+        x = mesh.wires[wire].x[worst - mesh.first_nodes[wire]]
+        return f"on the {mesh.wire_name(wire)} at {x:.1f} m along the line"
+
+    def lifts(self, positions: Floats, force: float, progress: Progress | None = None) -> Floats:
+        """[m], shape (points,): lift of the contact wire at each place [m] under a force [N] there.
+
+        Raises SolverError, with the place, if no equilibrium is found.
+        """
+        from scipy.sparse.linalg import splu
+
+        system, supports = self.system, self.shape.catenary.support_positions
+        stiffness = system.tangent(np.zeros(system.place.size))
+        factor = splu(stiffness.tocsc(), **_NARROW)
+        span = np.clip(np.searchsorted(supports, positions, side="right") - 1, 0, supports.size - 2)
+        lifts = np.empty(positions.size)
+        for number in np.unique(span):
+            mine = np.flatnonzero(span == number)
+            near, far = (
+                supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
+            )
+            loads = np.stack([self._free_load(float(x), force) for x in positions[mine]])
+            around = _Surroundings(self, stiffness, near, far)
+            moved = around.corrected(factor.solve(loads.T).T, loads)
+            if moved is None:
+                lifts[mine] = [self._lift(float(x), force) for x in positions[mine]]
+            else:
+                # what is left at the ends of that part of the line
+                residual = loads - (stiffness @ moved.T).T
+                residual[:, around.part] += around.extra(moved)
+                lifts[mine] = (loads * (moved + factor.solve(residual.T).T)).sum(axis=1) / force
+            if progress:
+                progress((int(mine[-1]) + 1) / positions.size)
+        return lifts
+
+    def _free_load(self, x: float, force: float) -> Floats:
+        """[N], shape (free,): an upward force [N] at a place [m]."""
+        index, weights = self.at(x)
+        place, load = self.system.place[index], np.zeros(self.system.size)
+        np.add.at(load, place[place >= 0], force * weights[place >= 0])
+        return load
+
+    def _lift(self, x: float, force: float) -> float:
+        """[m], by Newton's method on the whole line."""
+        return float(self.load([x], [1.0]) @ self.solve([x], [force]))
+
+
+class _Surroundings:
+    """The line near a force, where it answers otherwise than its tangent at rest.
+
+    Wires, droppers and arms are taken as they are between the places ``near`` [m]; what they do otherwise
+    is answered by the tangent at rest between the places ``far``, slack droppers and turned arms put into it
+    by a Woodbury update, until nothing changes.
+    """
+
+    def __init__(self, line: LoadedLine, stiffness: Any, near: Floats, far: Floats) -> None:
+        from scipy.sparse.linalg import splu
+
+        system, mesh = line.system, line.shape.mesh
+        x = np.repeat(np.concatenate([wire.x for wire in mesh.wires]), 2 * system.axes)
+        # at its left end this part of the line is held, at its right end it moves along as under weights
+        around = (x > far[0] + 1e-6) & (x <= far[1] + 1e-6) if far[0] > 0 else x <= far[1] + 1e-6
+        free = system.place[around & (system.place >= 0)]
+        self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
+        beyond = system.across(x, far[1] + 1e-6).tangent(np.zeros(x.size))
+        self._stiffness = (stiffness - beyond)[self.part, self.part]
+        self._factor = splu(self._stiffness.tocsc(), **_NARROW)
+        self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
+        rest = self._reference[self._index].reshape(-1, 4, system.axes)
+        self._blocks, self._inner = tangent_blocks(self._cables, rest), inner_forces(self._cables, rest)
+        self._at_rest = [
+            (s.index(), s.blocks(self._reference, taut=True), s.forces(self._reference))
+            for s in self._springs
+        ]
+        self._known: dict[tuple[bool, int], tuple[Any, Floats]] = {}
+
+    def _take(self, inside: System) -> None:
+        """Elements and springs, their coordinates numbered anew."""
+        index, springs = inside.elements(), (inside.droppers, inside.arms)
+        used = np.unique(np.concatenate([index.ravel(), *(s.index().ravel() for s in springs)]))
+        self.axes, self._reference, self._place = inside.axes, inside.reference[used], inside.place[used]
+        self._index, self._cables = np.searchsorted(used, index), inside.cables
+        self._springs = [
+            replace(s, first=np.searchsorted(used, s.first), last=np.searchsorted(used, s.last))
+            for s in springs
+        ]
+        self._gather = inside.transformation[used][:, self.part].T.tocsr()
+
+    def corrected(self, linear: Floats, loads: Floats) -> Floats | None:
+        """Answers, shape (points, free), from those of the tangent at rest; None where they do not settle.
+
+        loads : [N], shape (points, free)
+        """
+        moved, before = linear.copy(), (loads * linear).sum(axis=1)
+        added = np.zeros_like(linear[:, self.part])
+        for _ in range(_CORRECTIONS):
+            residual = self.extra(moved) - (self._stiffness @ added.T).T
+            step = self._updated(self._factor.solve(residual.T).T, self._changes(self._near(moved)))
+            added += step
+            moved[:, self.part] += step
+            lifts = (loads * moved).sum(axis=1)
+            if np.abs(lifts - before).max() <= _SAME * np.abs(lifts).max():
+                return moved
+            before = lifts
+        return None
+
+    def _near(self, moved: Floats) -> Floats:
+        """Shape (points, coordinates inside), of the free ones."""
+        return np.where(self._place >= 0, moved[:, self._place], 0.0)
+
+    def extra(self, free: Floats) -> Floats:
+        """[N], shape (points, part): what the line's forces have that its tangent at rest has not.
+
+        free : displacements, shape (points, free)
+        """
+        moved = self._near(free)
+        points, size = moved.shape
+        many = Cables(*(np.tile(values, points) for values in vars(self._cables).values()))
+        here = moved[:, self._index]
+        total = (self._reference[self._index] + here).reshape(-1, 4, self.axes)
+        inner = inner_forces(many, total).reshape(points, *self._index.shape)
+        linear = np.einsum("eij,pej->pei", self._blocks, here)
+        found = _summed(linear + self._inner.reshape(self._index.shape) - inner, self._index, size)
+        for springs, (index, blocks, forces) in zip(self._springs, self._at_rest, strict=True):
+            linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
+            now = springs.forces(self._reference + moved)
+            found += _summed(now - forces + linear, index, size)
+        extra: Floats = (self._gather @ found.T).T
+        return extra
+
+    def _changes(self, moved: Floats) -> dict[tuple[bool, int], Floats]:
+        """Slack droppers and turned arms: change of stiffness [N/m], shape (points, axes, axes).
+
+        moved : shape (points, coordinates inside). Keys are whether it is a dropper, and its number
+        """
+        found = {}
+        for springs in self._springs:
+            rest, now = springs.span(self._reference), springs.span(self._reference + moved)
+            at_rest = spring_blocks(rest, springs.tension(rest), springs.stiffness)
+            if springs.pulls_only:
+                change = -at_rest * (springs.tension(now) <= 0)[:, :, None, None]
+            else:  # its axial force changes little: it turns
+                change = spring_blocks(now, springs.tension(rest), springs.stiffness) - at_rest
+            for i in np.flatnonzero(change.any(axis=(0, 2, 3))).tolist():
+                found[springs.pulls_only, i] = change[:, i]
+        return found
+
+    def _updated(self, answers: Floats, changes: dict[tuple[bool, int], Floats]) -> Floats:
+        """Answers of the line at rest, shape (points, part), as those of the line with changed springs.
+
+        changes : of stiffness [N/m], shape (points, axes, axes), by spring
+        """
+        if not changes:
+            return answers
+        from scipy.sparse import vstack
+
+        points, axes = len(answers), self.axes
+        known = [self._opened(*spring) for spring in changes]
+        rows = vstack([row for row, _ in known]).tocsr()
+        columns = np.concatenate([column for _, column in known], axis=1)
+        blocks = np.stack(list(changes.values()), axis=1)
+
+        def changed(values: Floats) -> Floats:
+            of_each = values.reshape(len(values), blocks.shape[1], axes, -1)
+            product: Floats = np.einsum("psij,psjk->psik", blocks, of_each)
+            return product.reshape(points, rows.shape[0], -1)
+
+        inner = np.eye(rows.shape[0]) + changed((rows @ columns)[None])
+        loads = np.linalg.solve(inner, changed((rows @ answers.T).T))[:, :, 0]
+        # not by BLAS, whose threads cost more than they bring on so little
+        updated: Floats = answers - np.einsum("pm,fm->pf", loads, columns)
+        return updated
+
+    def _opened(self, dropper: bool, number: int) -> tuple[Any, Floats]:
+        """A spring's span with the free coordinates, sparse, shape (axes, part), and what opening it does.
+
+        That is the line's answer, shape (part, axes), to forces that open the span.
+        """
+        from scipy.sparse import csr_matrix
+
+        if (dropper, number) not in self._known:
+            at = self._springs[0 if dropper else 1].index()[number]
+            signs = np.repeat([-1.0, 1.0][: at.size // self.axes], self.axes)
+            shape = (self.axes, self._reference.size)
+            row = csr_matrix((signs, (np.arange(at.size) % self.axes, at)), shape=shape) @ self._gather.T
+            self._known[dropper, number] = row, self._factor.solve(row.toarray().T)
+        return self._known[dropper, number]
+
+
+def _summed(values: Floats, index: Integers, size: int) -> Floats:
+    """Shape (points, size), of values at coordinates, shape (points, *index.shape)."""
+    points = len(values)
+    place = (size * np.arange(points)[:, None] + index.ravel()).ravel()
+    summed = np.bincount(place, values.reshape(points, -1).ravel(), minlength=points * size)
+    return np.asarray(summed, dtype=float).reshape(points, size)

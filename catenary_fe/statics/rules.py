@@ -1,0 +1,132 @@
+"""What form finding refuses: designs that no crew could install."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.layout import Catenary, InputError, counted
+from catenary_fe.layout.arguments import numbers
+
+Floats = NDArray[np.float64]
+
+STEEPEST = np.pi / 3  # [rad] a steady arm that stands up more has no hold on the wire
+_LEAST_PULL = 1.0  # [N] sideways
+
+
+def dropper_names(catenary: Catenary) -> list[str]:
+    """Shape (droppers,): each dropper's name in errors."""
+    return [
+        f"span {i}: dropper {number} at {dropper.position:g} m"
+        for i, span in enumerate(catenary.spans, start=1)
+        for number, dropper in enumerate(span.droppers, start=1)
+    ]
+
+
+def check_pulls(catenary: Catenary, pulls: Floats) -> None:
+    """Raises InputError for droppers that would have to push."""
+    _report(
+        f"{name} would have to push with {-force:.1f} N; droppers only pull: change the pre-sag, the height"
+        " there or the position"
+        for name, force in zip(dropper_names(catenary), pulls, strict=True)
+        if force < 0
+    )
+
+
+def check_room(catenary: Catenary, heights: Floats) -> None:
+    """Raises InputError for droppers whose upper clamp lies below the lower one."""
+    tension = catenary.messenger_wire.tension
+    _report(
+        f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
+        f" system_height or the messenger wire's tension of {tension:g} N"
+        for name, height in zip(dropper_names(catenary), heights, strict=True)
+        if height <= 0
+    )
+
+
+def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> None:
+    """Raises InputError for droppers so soft that their tension stretches them from no length at all.
+
+    distances : [m], shape (droppers,), between their clamps
+    tensions : [N], shape (droppers,)
+    """
+    stiffness = [d.stiffness for d in catenary.droppers]
+    _report(
+        f"{name}: stiffness = {k:g} N/m is too small: its tension of {tension:.0f} N would stretch it by"
+        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it, look at its unit"
+        for name, k, distance, tension in zip(
+            dropper_names(catenary), stiffness, distances, tensions, strict=True
+        )
+        if tension / k >= distance
+    )
+
+
+def check_links(catenary: Catenary, arm_forces: Floats) -> None:
+    """Raises InputError for links that would have to push, or that nothing pulls.
+
+    arm_forces : [N], shape (contact wires, spans + 1, 2), on the wires: to the left, up
+    """
+    faults = []
+    for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
+        arm = support.steady_arm
+        if arm is None or arm.length is None:
+            continue
+        for left, up in arm_forces[:, i - 1]:
+            side = "left" if left > 0 else "right"
+            steep = np.arctan2(abs(up), abs(left))
+            if abs(left) < _LEAST_PULL:
+                faults.append(
+                    f"support {i}: nothing pulls the steady arm sideways ({abs(left):.2f} N): a link needs a"
+                    " stagger or a curve; give one, or a stiffness instead of a length"
+                )
+            elif arm.side and arm.side != side:
+                faults.append(
+                    f"support {i}: the arm on the {arm.side} would have to push with {abs(left):.0f} N:"
+                    f" steady arms only pull: put it on the {side}, or change the stagger"
+                )
+            elif steep > STEEPEST:
+                faults.append(
+                    f"support {i}: the steady arm would stand up by {degrees(steep):.0f}° to hold {up:.0f} N"
+                    f" of weight with {abs(left):.0f} N of sideways pull, more than {degrees(STEEPEST):.0f}°;"
+                    " give more stagger, or a stiffness instead of a length"
+                )
+    _report(dict.fromkeys(faults))
+
+
+def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) -> Floats:
+    """[m], shape (droppers,): lengths that were given here, or in the layout.
+
+    Raises InputError for missing or impossible ones.
+    """
+    names = dropper_names(catenary)
+    if lengths is None:
+        given = [d.length for d in catenary.droppers]
+        missing = [n for n, v in zip(names, given, strict=True) if v is None]
+        if missing:
+            raise InputError(
+                f"{missing[0]} has no length ({counted(len(missing), 'dropper')} in all); give all lengths"
+            )
+        lengths = np.array(given, dtype=float)
+    values = numbers("lengths", lengths)
+    if values.shape != (len(names),):
+        raise InputError(
+            f"{counted(values.size, 'dropper length')} for {counted(len(names), 'dropper')}: give one each"
+        )
+    heights = catenary.messenger_support_heights
+    room = np.interp(catenary.dropper_positions, catenary.support_positions, heights)
+    room -= catenary.design_heights
+    _report(
+        f"{name}: a length of {value:g} m must lie between 0 and the system height, {space:g} m there"
+        for name, value, space in zip(names, values, room, strict=True)
+        if not 0 < value < space
+    )
+    return values
+
+
+def _report(faults: Iterable[str]) -> None:
+    lines = list(faults)
+    if lines:
+        raise InputError(*lines)

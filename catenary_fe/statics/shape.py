@@ -1,0 +1,183 @@
+"""The static shape of an installed catenary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from catenary_fe.fe.installation import Installation
+from catenary_fe.fe.mesh import Mesh, MeshSettings
+from catenary_fe.layout import Catenary
+from catenary_fe.layout.arguments import on_the_wire
+from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.statics.schedules import DropperRow, SupportRow, dropper_rows, support_rows
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Floats = NDArray[np.float64]
+
+
+@changed_by_copy
+@dataclass(frozen=True)
+class HangingWire:
+    """Where one wire hangs.
+
+    x, y, z : [m], shape (nodes,), along the track, to the left of its centre (0 in the plane), above the rail
+    dy_dx, dz_dx : shape (nodes,), inclinations
+    """
+
+    x: Floats
+    y: Floats
+    z: Floats
+    dy_dx: Floats
+    dz_dx: Floats
+
+    @classmethod
+    def from_coordinates(cls, q: Floats) -> HangingWire:
+        """From total coordinates of shape (nodes, 2 * axes): points, slopes."""
+        axes = q.shape[1] // 2
+        inclinations = q[:, axes:] / q[:, axes : axes + 1]
+        none = np.zeros(len(q))
+        y, dy_dx = (q[:, 1], inclinations[:, 1]) if axes == 3 else (none, none)
+        return cls(q[:, 0], y, q[:, axes - 1], dy_dx, inclinations[:, -1])
+
+    def height(self, x: ArrayLike) -> Floats:
+        """[m] at positions x [m] along the line, any shape; cubic inside the elements.
+
+        Raises InputError beyond the wire's ends.
+        """
+        return self._between(x, self.z, self.dz_dx)
+
+    def lateral(self, x: ArrayLike) -> Floats:
+        """[m] to the left of the track's centre at positions x [m] along the line, any shape.
+
+        Raises InputError beyond the wire's ends.
+        """
+        return self._between(x, self.y, self.dy_dx)
+
+    def _between(self, x: ArrayLike, values: Floats, slopes: Floats) -> Floats:
+        from scipy.interpolate import CubicHermiteSpline
+
+        at = on_the_wire("x", x, self.x)
+        found: Floats = CubicHermiteSpline(self.x, values, slopes)(at)
+        return found
+
+
+@changed_by_copy
+@dataclass(frozen=True)
+class Shape:
+    """A catenary with its dropper lengths, in static equilibrium on one mesh.
+
+    wires : contact wires (the right one first), messenger wire, stitch wires, as in the mesh
+    dropper_forces : [N], shape (droppers,)
+    installed_lengths : [m], shape (droppers,), of the loaded droppers
+    """
+
+    catenary: Catenary
+    mesh_settings: MeshSettings
+    mesh: Mesh
+    installation: Installation
+    wires: tuple[HangingWire, ...]
+    dropper_forces: Floats
+    installed_lengths: Floats
+
+    @property
+    def contact_wires(self) -> tuple[HangingWire, ...]:
+        """One contact wire, or the right and the left one."""
+        return self.wires[: self.mesh.contact_wires]
+
+    @property
+    def messenger_wire(self) -> HangingWire:
+        """The messenger wire."""
+        return self.wires[self.mesh.contact_wires]
+
+    @property
+    def stitch_wires(self) -> tuple[HangingWire, ...]:
+        """The stitch wires, none without them."""
+        return self.wires[self.mesh.first_stitch :]
+
+    @property
+    def contact_wire_x(self) -> Floats:
+        """[m], shape (nodes,), of the (right) contact wire."""
+        return self.wires[0].x
+
+    @property
+    def contact_wire_z(self) -> Floats:
+        """[m], shape (nodes,), of the (right) contact wire."""
+        return self.wires[0].z
+
+    @property
+    def messenger_wire_x(self) -> Floats:
+        """[m], shape (nodes,)."""
+        return self.messenger_wire.x
+
+    @property
+    def messenger_wire_z(self) -> Floats:
+        """[m], shape (nodes,)."""
+        return self.messenger_wire.z
+
+    @property
+    def height_errors(self) -> Floats:
+        """[m], shape (droppers,): height of the contact wire above its design height at each dropper."""
+        heights = np.concatenate([wire.z for wire in self.wires])
+        errors: Floats = heights[self.mesh.nodes(self.mesh.lower)] - self.catenary.design_heights
+        return errors
+
+    @property
+    def lengths_note(self) -> str:
+        """Which dropper lengths the line hangs with, and what they make of its design heights."""
+        if not self.catenary.gives_dropper_lengths:
+            return "hung with the dropper lengths of its design"
+        low, high = 1e3 * self.height_errors.min(), 1e3 * self.height_errors.max()
+        return (
+            f"hung with the {self.dropper_lengths.size} dropper lengths that the layout gives: at the"
+            f" droppers the contact wire lies {low:+.1f} to {high:+.1f} mm from its design height"
+        )
+
+    def contact_wire_height(self, x: ArrayLike) -> Floats:
+        """[m] of the (right) contact wire at positions x [m] along the line, any shape.
+
+        Raises InputError beyond the line's ends.
+        """
+        return self.wires[0].height(x)
+
+    @property
+    def dropper_lengths(self) -> Floats:
+        """[m], shape (droppers,), stress-free."""
+        return self.installation.dropper_lengths
+
+    @property
+    def steady_arm_forces(self) -> Floats:
+        """[N], shape (spans + 1,), upward on all contact wires; 0 where there is no arm."""
+        forces: Floats = self.installation.arm_forces[:, :, -1].sum(axis=0)
+        return forces
+
+    @property
+    def steady_arm_lateral_forces(self) -> Floats:
+        """[N], shape (spans + 1,), to the left on all contact wires; 0 in the plane."""
+        forces = self.installation.arm_forces
+        lateral: Floats = forces[:, :, 0].sum(axis=0) if forces.shape[2] > 1 else 0 * forces[0, :, 0]
+        return lateral
+
+    @property
+    def support_forces(self) -> Floats:
+        """[N], shape (spans + 1,), upward on the messenger wire."""
+        return self.installation.support_forces[:, -1]
+
+    def dropper_schedule(self) -> list[DropperRow]:
+        """The table that a crew cuts and hangs the droppers by, one row a dropper."""
+        return dropper_rows(self)
+
+    def support_schedule(self) -> list[SupportRow]:
+        """The table that a crew sets the supports by, one row a support: places, arms, forces, tensions."""
+        return support_rows(self)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the static shape, heights exaggerated. See :func:`catenary_fe.views.plot_static_shape`."""
+        from catenary_fe.views import plot_static_shape
+
+        return plot_static_shape(self, ax=ax)

@@ -1,0 +1,209 @@
+"""Statics of wires whose tension along the track is known: strings and tensioned beams in exact elements.
+
+While a line is installed, weights (or a winch) give each wire its tension, and nothing pulls along the track.
+Then height and lateral position are each a linear problem, H w'' - EI w'''' = -q, that has a direct solution:
+elements are exact, kinks at clamps and supports are as sharp as the wire makes them, whatever the mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.installation import element_pulls, element_values
+from catenary_fe.fe.mesh import Mesh
+from catenary_fe.layout import Catenary
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_STIFF = 0.05  # length of an element over that of its bending zone: below it the cubic element is exact
+
+
+def exact_stiffness(tension: Floats, bending_stiffness: Floats, length: Floats) -> Floats:
+    """Stiffness of tensioned beams, shape (elements, 4, 4): deflection and slope at both ends.
+
+    tension, bending_stiffness, length : [N], [N m²], [m], shape (elements,). Without bending stiffness it is
+        that of strings, which know no slopes.
+
+    Source: the stability functions of a beam under tension, derived here from w = a + b x + c cosh λx
+    + d sinh λx with λ = √(H/EI), and checked against that solution in the tests.
+    """
+    found = np.zeros((length.size, 4, 4))
+    bends = bending_stiffness > 0
+    H, EI, L = tension, np.where(bends, bending_stiffness, 1.0), length
+    u = np.where(bends, L * np.sqrt(H / EI), 1.0)
+    end = np.exp(-np.minimum(u, 700.0))
+    sech, tanh = 2 * end / (1 + end**2), (1 - end**2) / (1 + end**2)
+    rest = 2 * sech - 2 + u * tanh
+    cubic = u < _STIFF
+    rest = np.where(cubic, 1.0, rest)
+    shear = np.where(cubic, 12 + 1.2 * u**2, u**3 * tanh / rest)
+    moment = np.where(cubic, 6 + u**2 / 10, u**2 * (1 - sech) / rest)
+    near = np.where(cubic, 4 + 2 * u**2 / 15, u * (u - tanh) / rest)
+    far = np.where(cubic, 2 - u**2 / 30, u * (tanh - u * sech) / rest)
+    k = np.where(bends, shear * EI / L**3, H / L)
+    m, n, f = (np.where(bends, c * EI / L**p, 0.0) for c, p in ((moment, 2), (near, 1), (far, 1)))
+    found[:, 0, 0] = found[:, 2, 2] = k
+    found[:, 0, 2] = found[:, 2, 0] = -k
+    for i in (1, 3):
+        found[:, 0, i] = found[:, i, 0] = m
+        found[:, 2, i] = found[:, i, 2] = -m
+        found[:, i, i] = n
+    found[:, 1, 3] = found[:, 3, 1] = f
+    return found
+
+
+def exact_load(tension: Floats, bending_stiffness: Floats, length: Floats) -> Floats:
+    """What a load of 1 N/m does at the ends, shape (elements, 4), arguments as :func:`exact_stiffness`."""
+    bends = bending_stiffness > 0
+    u = np.where(bends, length * np.sqrt(tension / np.where(bends, bending_stiffness, 1.0)), 1.0)
+    small = u < _STIFF
+    half = np.where(small, 1.0, u / 2)
+    share = np.where(small, 1 / 12 - u**2 / 720, (half / np.tanh(half) - 1) / (2 * half) ** 2)
+    turn = np.where(bends, share * length**2, 0.0)
+    return np.stack([length / 2, turn, length / 2, -turn], axis=1)
+
+
+@dataclass(frozen=True)
+class TautWires:
+    """All wires of a catenary, seen along one axis across the track.
+
+    Unknowns are the nodes' displacements and behind them, of wires with bending stiffness, their slopes: both
+    of shape (nodes of all wires,). Stitch wires share displacements with the messenger wire at their ends.
+    """
+
+    catenary: Catenary
+    mesh: Mesh
+
+    @cached_property
+    def nodes(self) -> int:
+        """Nodes of all wires."""
+        return int(self.mesh.first_nodes[-1])
+
+    @cached_property
+    def dof(self) -> Integers:
+        """Shape (nodes,): number of each node's displacement."""
+        mesh, dof = self.mesh, np.arange(self.nodes)
+        for i, ends in enumerate(mesh.stitch_ends):
+            number = mesh.first_stitch + i
+            own = mesh.first_nodes[number] + np.array([0, mesh.wires[number].x.size - 1])
+            dof[own] = mesh.first_nodes[mesh.contact_wires] + ends
+        return dof
+
+    @cached_property
+    def x(self) -> Floats:
+        """[m], shape (nodes,), along the track."""
+        return np.concatenate([wire.x for wire in self.mesh.wires])
+
+    @cached_property
+    def wire_of(self) -> Integers:
+        """Shape (elements,): number of each element's wire."""
+        return np.repeat(np.arange(len(self.mesh.wires)), [w.x.size - 1 for w in self.mesh.wires])
+
+    def name_of(self, element: int) -> str:
+        """The wire that an element belongs to, in words."""
+        return self.mesh.wire_name(int(self.wire_of[element]))
+
+    @cached_property
+    def left(self) -> Integers:
+        """Shape (elements,): number of each element's first node; the second one follows it."""
+        return np.arange(self.wire_of.size) + self.wire_of
+
+    @cached_property
+    def length(self) -> Floats:
+        """[m], shape (elements,), along the track."""
+        return self.x[self.left + 1] - self.x[self.left]
+
+    @cached_property
+    def tension(self) -> Floats:
+        """[N], shape (elements,), along the track."""
+        return np.concatenate(element_pulls(self.catenary, self.mesh))
+
+    def of_wire(self, name: str) -> Floats:
+        """Shape (elements,): a parameter of each element's wire."""
+        return element_values(self.catenary, self.mesh, name)
+
+    @cached_property
+    def weight(self) -> Floats:
+        """[kg/m], shape (elements,), of the wires."""
+        return self.of_wire("mass_per_length")
+
+    @cached_property
+    def bending_stiffness(self) -> Floats:
+        """[N m²], shape (elements,)."""
+        return self.of_wire("bending_stiffness")
+
+    @cached_property
+    def index(self) -> Integers:
+        """Shape (elements, 4): numbers of displacement and slope at the first node, then at the second."""
+        a, b = self.left, self.left + 1
+        return np.stack([self.dof[a], self.nodes + a, self.dof[b], self.nodes + b], axis=1)
+
+    @cached_property
+    def stiffness(self) -> Any:
+        """Sparse, shape (2 * nodes, 2 * nodes)."""
+        blocks = exact_stiffness(self.tension, self.bending_stiffness, self.length)
+        return scattered([(self.index, blocks)], 2 * self.nodes)
+
+    def load(self, per_length: Floats) -> Floats:
+        """Shape (2 * nodes,): of a load [N/m] on each element, shape (elements,)."""
+        values = exact_load(self.tension, self.bending_stiffness, self.length) * per_length[:, None]
+        summed = np.bincount(self.index.ravel(), values.ravel(), minlength=2 * self.nodes)
+        return np.asarray(summed, dtype=float)
+
+    @cached_property
+    def idle(self) -> NDArray[np.bool_]:
+        """Shape (2 * nodes,): unknowns that no element has."""
+        return np.asarray(self.stiffness.diagonal() == 0)
+
+    def problem(self, held: Mapping[int, float], springs: Any = None) -> TautProblem:
+        """The wires held at some displacements [m] by their number, with springs in a sparse matrix [N/m]."""
+        K = self.stiffness if springs is None else (self.stiffness + springs).tocsr()
+        return TautProblem(K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle)
+
+    def slopes(self, found: Floats, per_length: Floats) -> Floats:
+        """Shape (nodes,): slopes under a load [N/m]; where a string kinks, the mean of both sides.
+
+        found : shape (2 * nodes,)
+        """
+        a, b, h = self.left, self.left + 1, self.length
+        chord = (found[self.dof[b]] - found[self.dof[a]]) / h
+        bow = per_length * h / (2 * self.tension)
+        total, count = np.zeros(self.nodes), np.zeros(self.nodes)
+        for node, slope in ((a, chord + bow), (b, chord - bow)):
+            total += np.bincount(node, slope, minlength=self.nodes)
+            count += np.bincount(node, minlength=self.nodes)
+        return np.where(self.idle[self.nodes :], total / count, found[self.nodes :])
+
+
+class TautProblem:
+    """A factorised linear problem of :class:`TautWires`.
+
+    reactions of a solution are the forces that hold what is held.
+    """
+
+    def __init__(self, stiffness: Any, held: Integers, values: Floats, idle: NDArray[np.bool_]) -> None:
+        from scipy.sparse.linalg import splu
+
+        self._stiffness, self._held, self._values = stiffness, held, values
+        free = ~idle
+        free[held] = False
+        self._free = np.flatnonzero(free)
+        inner = stiffness[self._free][:, self._free].tocsc()
+        self._factor = splu(inner, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+    def solve(self, force: Floats) -> tuple[Floats, Floats]:
+        """Displacements and slopes, and reactions [N], under forces [N]; all of shape (2 * nodes,)."""
+        found = np.zeros(force.size)
+        found[self._held] = self._values
+        found[self._free] = self._factor.solve((force - self._stiffness @ found)[self._free])
+        reactions = np.zeros(force.size)
+        reactions[self._held] = (self._stiffness @ found - force)[self._held]
+        return found, reactions

@@ -1,0 +1,133 @@
+"""Warnings before a solve, where physics and discretisation disagree: the rule, and both numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.layout import AnyPantograph, ElasticPantograph, InputError, Panhead, Pantograph
+from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
+from catenary_fe.layout.parameters import shorten
+from catenary_fe.layout.preflight import layout_warnings, pantograph_warnings
+from catenary_fe.results.signal import CUT_OFF
+from catenary_fe.statics import Shape
+
+FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
+SLOWEST = 5 / 3.6  # [m/s]
+RUN_IN = 2  # spans before the evaluated ones, for the start's transient to be left behind
+
+
+def check_speed(speed: float) -> None:
+    """Raises InputError for a speed [m/s] that is not one, or looks like another unit."""
+    if not np.isfinite(speed) or speed <= 0:
+        raise InputError(f"speed = {speed:g} m/s, {3.6 * speed:g} km/h: must be above 0")
+    if speed > FASTEST:
+        raise InputError(
+            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: above 600 km/h, it looks like the wrong unit;"
+            " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
+        )
+    if speed < SLOWEST:
+        raise InputError(
+            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
+            " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
+        )
+
+
+def check_pantographs(pantographs: object) -> None:
+    """Raises InputError for what is not a list of pantographs."""
+    remedy = "give a list of pantographs, such as [library.pantograph('DSA250')]"
+    if isinstance(pantographs, str) or not isinstance(pantographs, Sequence):
+        raise InputError(f"pantographs = {shorten(pantographs)}: {remedy}")
+    if not pantographs:
+        raise InputError("pantographs is empty; give at least one")
+    for i, pantograph in enumerate(pantographs, start=1):
+        if not isinstance(pantograph, AnyPantograph):
+            raise InputError(f"pantograph {i} = {shorten(pantograph)}: {remedy}")
+
+
+def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float, end: float) -> None:
+    """Raises InputError where a contact wire leaves a head sideways, or a pantograph has one wire too many.
+
+    start, end : [m] along the line, what is run over
+    """
+    wires, faults = shape.contact_wires, []
+    for pantograph in pantographs:
+        if isinstance(pantograph, ElasticPantograph):
+            if len(wires) > 1:
+                faults.append(
+                    f"{pantograph.name}: an elastic pantograph has one force for one contact wire, the layout"
+                    " has two; take a pantograph of masses"
+                )
+            continue
+        half = (pantograph.head or Panhead()).width / 2
+        for wire in wires:
+            x = np.linspace(start, end, max(2, int(np.ceil(end - start)) + 1))
+            x = np.union1d(x, wire.x[(wire.x >= start) & (wire.x <= end)])
+            y = wire.lateral(x)
+            worst = int(np.abs(y).argmax())
+            if abs(y[worst]) > half:
+                faults.append(
+                    f"{pantograph.name}: the contact wire leaves the head at {x[worst]:.1f} m (span"
+                    f" {int(np.searchsorted(shape.catenary.support_positions, x[worst]))}): it lies"
+                    f" {abs(y[worst]):.3f} m from the track's centre, the head reaches {half:g} m; lower the"
+                    " stagger, shorten the span in the curve, or take a wider head"
+                )
+    if faults:
+        raise InputError(*faults)
+
+
+def run_warnings(
+    shape: Shape,
+    pantographs: Sequence[AnyPantograph],
+    speed: float,
+    start: NDArray[np.float64],
+    time: TimeSettings,
+) -> list[str]:
+    """What to know before trusting a run: each line has the rule and both numbers."""
+    catenary = shape.catenary
+    wave_speed = catenary.contact_wire.wave_speed
+    found = layout_warnings(catenary)
+    found += dict.fromkeys(line for p in pantographs for line in pantograph_warnings(p, speed))
+    if not catenary.is_spatial:
+        found += dict.fromkeys(
+            f"{p.name}: head.spring_distance has no effect in the vertical plane, where no head rolls"
+            for p in pantographs
+            if isinstance(p, Pantograph) and p.head and p.head.spring_distance
+        )
+    if speed > WAVE_SPEED_SHARE * wave_speed:
+        found.append(
+            f"speed {3.6 * speed:.4g} km/h is {speed / wave_speed:.3f} of the contact wire's wave speed,"
+            f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}, as waves pile up ahead"
+            " of the pantograph; raise contact_wire.tension, or lower the speed"
+        )
+    longest = float(np.diff(shape.mesh.contact.x).max())
+    wavelength = (wave_speed - speed) / CUT_OFF
+    if 0 < wavelength < longest:  # beyond the wave speed nothing runs ahead
+        found.append(
+            f"elements of the contact wire of up to {longest:.2f} m are longer than the waves of"
+            f" {CUT_OFF:g} Hz ahead of the pantograph, {wavelength:.2f} m, and cannot carry them; take"
+            " shorter ones (--element-m)"
+        )
+    if time.step > 1 / (20 * CUT_OFF):
+        found.append(
+            f"time step {1e3 * time.step:g} ms: less than 20 steps in a period of {CUT_OFF:g} Hz; use at most"
+            f" {1e3 / (20 * CUT_OFF):g} ms"
+        )
+    if speed * time.step > longest:
+        found.append(
+            f"a pantograph jumps {speed * time.step:.2f} m a step, over elements of {longest:.2f} m; use a"
+            " smaller time step"
+        )
+    supports = catenary.support_positions
+    reached = int(np.searchsorted(supports, start.max(), side="right")) - 1
+    first = min(catenary.spans_to_evaluate)
+    if first - 1 - reached < RUN_IN:
+        found.append(
+            f"the start at {start.max():g} m is only {supports[first - 1] - start.max():g} m before span"
+            f" {first}, the first evaluated one; {RUN_IN} spans let the start's transient fade: evaluate"
+            " later spans, or start earlier"
+        )
+    return found

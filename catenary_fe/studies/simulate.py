@@ -1,0 +1,292 @@
+"""Runs in time: pantographs at constant speed along the line."""
+
+from __future__ import annotations
+
+import logging
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.compiled import COMPILED
+from catenary_fe.engines.linearised.run import Case, LinearisedCatenary, aimed, share_of
+from catenary_fe.engines.linearised.start import can_be_compiled
+from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted, counted
+from catenary_fe.layout.arguments import checked, number, numbers, one_of
+from catenary_fe.results import Run
+from catenary_fe.statics import Shape
+from catenary_fe.studies.checks import check_heads, check_pantographs, check_speed, run_warnings
+from catenary_fe.studies.mean_force import MeanForce
+from catenary_fe.studies.partial import kept_when_stopped
+from catenary_fe.studies.record import make_run, run_key
+from catenary_fe.studies.resources import check_memory, demand
+
+if TYPE_CHECKING:
+    from catenary_fe.engines.exudyn.run import History
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+Method = Literal["nonlinear", "linearised", "exudyn"]
+
+AIMING = 0.1  # share of linearised runs in the work of one that follows them
+
+Pairs = Sequence[tuple[AnyPantograph, float]]
+Drive = Callable[[Pairs, float, Floats, int, Progress | None, Checkpoint | None], "History"]
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Where a run starts and ends.
+
+    start : [m], shape (pantographs,)
+    distance : [m] that each pantograph runs
+    """
+
+    start: Floats
+    distance: float
+
+
+@checked
+def simulate(
+    shape: Shape,
+    pantographs: Sequence[AnyPantograph],
+    *,
+    speed: float,
+    positions: Sequence[float] | None = None,
+    time: TimeSettings | None = None,
+    store_wire: float | None = None,
+    progress: Progress | None = None,
+    method: Method = "nonlinear",
+    energy: bool = False,
+    checkpoint: str | Path | None = None,
+) -> Run:
+    """Run pantographs from static contact along the line at constant speed.
+
+    Where a pantograph asks for a mean force, linearised runs find the uplift for it. Until the mean over the
+    evaluated spans is within 0.1 N of it, the run is repeated with another uplift, which is seldom needed.
+
+    shape : the catenary in static equilibrium, with its mesh
+    speed : [m/s]
+    positions : [m] along the line at the start, one a pantograph; unset (for one): near the first support
+    time : settings of the time integration
+    store_wire : [s] between stored shapes of the whole wires, rounded to whole time steps; unset: none
+    progress : called with the share done, 0 to 1
+    method : "nonlinear" in compiled code; "exudyn" the same with Exudyn's own solver, many times slower, to
+        compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
+        the static state, many times faster: slack droppers and contact are solved in each step, large motions
+        are not there. It warns where they matter.
+    energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
+        judges, a quarter slower; runs with the method "nonlinear" always do
+    checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
+        again, the same run goes on from it, with the same result. It is removed at the end
+
+    Raises InputError for a speed in the wrong unit, energies or a checkpoint of another method, a checkpoint
+    of another run, a run that would end beyond the line or take more memory than there is, a pantograph that
+    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
+    the mean force is not reached, RunInterrupted after Ctrl-C; both have the run until then as ``partial``.
+    """
+    check_pantographs(pantographs)
+    time = time or TimeSettings()
+    _check_options(speed, method, energy, time, store_wire)
+    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
+    if checkpoint is not None and not compiled:
+        raise InputError(
+            f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
+        )
+    plan = plan_run(shape, len(pantographs), positions)
+    check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
+    warnings = run_warnings(shape, pantographs, speed, plan.start, time)
+    if method == "linearised" and time.tolerance != TimeSettings().tolerance:
+        warnings.append(
+            f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
+        )
+    case = Case(pantographs, speed, plan.start, plan.distance, warnings)
+    _check_room(shape, case, time, store_wire, method)
+    for warning in warnings:
+        _log.warning(warning)
+    if method == "linearised":
+        return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
+    set_up = partial(_compiled, shape, time, store_wire)
+    if not compiled:
+        set_up = partial(_by_exudyn, shape, time, store_wire, energy or method == "nonlinear")
+
+    def label(uplifts: Floats, history: History) -> Run:
+        return make_run(shape, pantographs, uplifts, speed, time, history, warnings, method)
+
+    keeper = None
+    if checkpoint is not None:
+        keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
+    force = MeanForce(pantographs, speed)
+    if force.sought and COMPILED and not (keeper and keeper.kept):
+        force, progress = _aimed(shape, case, time, progress)
+    return _told(_until_mean_force(case, time, force, set_up, label, progress, keeper), len(warnings))
+
+
+def _told(run: Run, known: int) -> Run:
+    """The run, with what it warns of in the log; the first ``known`` warnings are there already."""
+    for warning in run.warnings[known:]:
+        _log.warning(warning)
+    return run
+
+
+def _check_options(
+    speed: float, method: Method, energy: bool, time: TimeSettings, store_wire: float | None
+) -> None:
+    check_speed(speed)
+    one_of("method", method, get_args(Method))
+    if energy and method == "linearised":
+        raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
+    if store_wire is not None:
+        number("store_wire", store_wire, "s", least=time.step, remedy="that is the time step")
+
+
+def _check_room(
+    shape: Shape, case: Case, time: TimeSettings, store_wire: float | None, method: Method
+) -> None:
+    """Raises InputError for a run that takes more memory than there is."""
+    duration = case.distance / case.speed
+    if store_wire is not None and store_wire > duration:
+        raise InputError(
+            f"store_wire = {store_wire:g} s is longer than the run, {duration:.4g} s; shorten it"
+        )
+    steps = int(duration / time.step)
+    shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
+    needs = demand(shape.catenary, shape.mesh, case.pantographs, steps, shapes, method)
+    check_memory(needs, f"run at {3.6 * case.speed:g} km/h")
+
+
+def _linearised(
+    shape: Shape, time: TimeSettings, store_wire: float | None, case: Case, progress: Progress | None
+) -> Run:
+    (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
+    if isinstance(result, CatenaryError):
+        raise result
+    return result
+
+
+def _aimed(
+    shape: Shape, case: Case, time: TimeSettings, progress: Progress | None
+) -> tuple[MeanForce, Progress | None]:
+    """Uplifts to begin with, found by linearised runs, and the progress of what is left to do."""
+    try:
+        force = aimed(shape, case, time, share_of(progress, 0.0, AIMING))
+    except KeyboardInterrupt as error:
+        raise error if isinstance(error, RunInterrupted) else RunInterrupted() from None
+    return force, share_of(progress, AIMING, 1 - AIMING)
+
+
+def _until_mean_force(
+    case: Case,
+    time: TimeSettings,
+    force: MeanForce,
+    set_up: Callable[[], Drive],
+    label: Callable[[Floats, History], Run],
+    progress: Progress | None,
+    keeper: Checkpoint | None,
+) -> Run:
+    """Run once, or with other uplifts until the pantographs have the mean forces that they ask for.
+
+    label : makes a run of uplifts and a history
+    """
+    steps = int(np.floor(case.distance / (case.speed * time.step) + 1e-9))
+    if keeper:
+        force.take_up(keeper)
+    begin = clock.perf_counter()
+    drive = set_up()
+    while True:
+        pairs = list(zip(case.pantographs, force.uplifts.tolist(), strict=True))
+        labelled = partial(label, force.uplifts)
+        with kept_when_stopped(labelled, steps * time.step):
+            run = labelled(drive(pairs, case.speed, case.start, steps, progress, keeper))
+        run = Run(run.data, clock.perf_counter() - begin)
+        reached = force.reached(run)
+        if keeper:
+            keeper.remove() if reached else keeper.begin(force.state())
+        if reached:
+            return run
+        begin = clock.perf_counter()
+
+
+def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
+    from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+
+    return NonlinearCatenary(shape, time, store_wire).drive
+
+
+def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool) -> Drive:
+    from catenary_fe.engines.exudyn.run import Trip, drive
+    from catenary_fe.engines.tension import INTERVAL
+
+    every = max(INTERVAL, time.step) if energy else None
+
+    def drive_it(
+        pantographs: Pairs,
+        speed: float,
+        positions: Floats,
+        steps: int,
+        progress: Progress | None,
+        checkpoint: Checkpoint | None,
+    ) -> History:
+        assert checkpoint is None
+        trip = Trip(speed, positions, steps, time, wire_interval=store_wire, energy_interval=every)
+        return drive(shape.catenary, shape.mesh, shape.installation, pantographs, trip, progress)
+
+    return drive_it
+
+
+def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Plan:
+    """Start near the first support, end as near to the last one; all pantographs pass the evaluated spans.
+
+    Raises InputError where that does not fit on the line.
+    """
+    catenary = shape.catenary
+    length, supports = catenary.length, catenary.support_positions
+    margin = float(np.diff(supports).min()) / 6
+    if positions is None:
+        if count > 1:
+            raise InputError(
+                f"{count} pantographs need their positions at the start, in metres along the line"
+            )
+        positions = [margin]
+    start = np.atleast_1d(numbers("positions", positions))
+    if start.shape != (count,):
+        raise InputError(
+            f"{counted(start.size, 'position')} for {counted(count, 'pantograph')}: give one for each"
+        )
+    for value in start:
+        if not margin <= value < length - margin:
+            raise InputError(
+                f"pantograph at {value:g} m: must start between {margin:g} m and {length - margin:g} m, a"
+                " sixth of a span from the line's ends"
+            )
+    if count > 1 and np.diff(np.sort(start)).min() < 1:
+        raise InputError("two pantographs start less than 1 m apart; give positions that differ")
+    first, last = min(catenary.spans_to_evaluate) - 1, max(catenary.spans_to_evaluate)
+    distance = length - margin - start.max()
+    if first == 0:
+        raise InputError(
+            "evaluated_spans: a run starts in the line's first span, which therefore cannot be evaluated; add"
+            " spans (three are the least) or name later ones in evaluated_spans"
+        )
+    if start.max() > supports[first]:
+        raise InputError(
+            f"a pantograph starts at {start.max():g} m, inside or behind the evaluated spans, which begin at"
+            f" {supports[first]:g} m; start earlier or evaluate later spans"
+        )
+    if start.min() + distance < supports[last]:
+        raise InputError(
+            f"the run would end beyond the line: when the last pantograph leaves the evaluated spans at"
+            f" {supports[last]:g} m, the first one would be at {supports[last] + np.ptp(start):g} m of"
+            f" {length:g} m; use more spans, evaluate earlier ones, or put the pantographs closer together"
+        )
+    return Plan(start, float(distance))

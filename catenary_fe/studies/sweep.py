@@ -1,0 +1,399 @@
+"""Sweeps: many runs, on all cores or an existing Dask cluster; finished cases are kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import signal
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from catenary_fe.engines.arrays import SLOTS
+from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.fe.mesh import MeshSettings, make_mesh
+from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
+from catenary_fe.layout.arguments import whole
+from catenary_fe.results import Run
+from catenary_fe.results.signal import FilterKind
+from catenary_fe.statics import Shape, find_form
+from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
+from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
+from catenary_fe.studies.simulate import Method, plan_run, simulate
+from catenary_fe.studies.sweep_store import Record, Store, open_store
+
+Progress = Callable[[int, int], None]
+LOST = "lost"  # marks the record of a case that was killed: it is not kept
+_log = logging.getLogger(__name__)
+RESULTS = 3  # rises when the same inputs give other results: cases that were kept are then computed anew
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepSettings:
+    """What all cases of a sweep have in common."""
+
+    method: Method = "linearised"
+    mesh: MeshSettings = field(default_factory=MeshSettings)
+    time: TimeSettings = field(default_factory=TimeSettings)
+    filter: FilterKind = "causal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepCase:
+    """One run of a sweep.
+
+    values : what tells it from the others, by column of the table
+    positions : [m] of the pantographs at the start, empty for one near the first support
+    """
+
+    values: dict[str, Any]
+    catenary: Catenary
+    pantographs: tuple[AnyPantograph, ...]
+    speed: float
+    positions: tuple[float, ...] = ()
+
+    def key(self, settings: SweepSettings) -> str:
+        """A name that is the same only for the same inputs."""
+        inputs = [
+            self.catenary.model_dump_json(),
+            *(p.model_dump_json() for p in self.pantographs),
+            repr((self.speed, self.positions)),
+            json.dumps(asdict(settings), sort_keys=True),
+            version("catenary_fe"),
+            str(RESULTS),
+        ]
+        return hashlib.sha256("\n".join(inputs).encode()).hexdigest()[:20]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BrokenCase:
+    """A run that cannot be described: its values break a rule."""
+
+    values: dict[str, Any]
+    error: CatenaryError
+
+
+def run_sweep(
+    cases: Sequence[SweepCase | BrokenCase],
+    settings: SweepSettings,
+    folder: str | Path,
+    *,
+    jobs: int = -1,
+    scheduler: str | None = None,
+    retry: bool = False,
+    progress: Progress | None = None,
+) -> list[Record]:
+    """Run all cases that the folder does not hold yet; one record a case, in the order of the cases.
+
+    A record has ``values``, and either ``summary`` (see :meth:`Run.summary`) or ``error``. Each is written
+    into ``folder/cases`` as soon as it is there: a sweep that was stopped goes on from where it was.
+
+    jobs : number of processes, -1: one a core, fewer where the memory has no room for so many
+    scheduler : address of a Dask cluster to run on instead
+    retry : run cases again that failed
+    progress : called with the numbers of cases done and of all cases
+
+    A case whose worker process is killed is tried again; where that happens also when it runs alone, its
+    record says ``error`` and ``lost``, and it is tried again at the next start.
+
+    Raises InputError if the folder cannot be written, another process writes there, the memory has no room,
+    or the cluster is not there.
+    """
+    with open_store(Path(folder) / "cases") as store:
+        return _run_missing(cases, settings, store, jobs, scheduler, retry, progress)
+
+
+def _run_missing(
+    cases: Sequence[SweepCase | BrokenCase],
+    settings: SweepSettings,
+    store: Store,
+    jobs: int,
+    scheduler: str | None,
+    retry: bool,
+    progress: Progress | None,
+) -> list[Record]:
+    records = [
+        _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case.key(settings), retry)
+        for case in cases
+    ]
+    missing = [i for i, record in enumerate(records) if record is None]
+    done = len(cases) - len(missing)
+    if done:
+        _log.info("%d of %d cases are there already", done, len(cases))
+    to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
+    workers = _workers(jobs)
+    if to_run and not scheduler:
+        needs = _largest_demand(list(to_run.values()), settings)
+        workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
+        check_memory(needs, "sweep", workers)
+    tasks = _tasks(to_run, settings, workers)
+    for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
+        for i, record in zip(numbers, found, strict=True):
+            records[i] = record
+            if LOST not in record:
+                store.write(to_run[i].key(settings), record)
+        done += len(numbers)
+        if progress:
+            progress(done, len(cases))
+    return [record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record]
+
+
+def _kept(store: Store, key: str, retry: bool) -> Record | None:
+    """The record of a case that is finished; of one that failed only if it shall not be tried again."""
+    record = store.read(key)
+    if record is None or ("summary" in record) == ("error" in record):
+        return None
+    return None if retry and "error" in record else record
+
+
+def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Demand:
+    """Of a process at its largest: the longest line at the lowest speed, in all slots."""
+    longest = max(cases, key=lambda case: case.catenary.length)
+    most = max(cases, key=lambda case: len(case.pantographs))
+    speed = min(case.speed for case in cases)
+    steps = int(longest.catenary.length / (speed * settings.time.step)) if speed > 0 else 0
+    slots = min(SLOTS, len(cases)) if settings.method == "linearised" else 1
+    mesh = make_mesh(longest.catenary, settings.mesh)
+    return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, slots)
+
+
+def _workers(jobs: int) -> int:
+    if jobs != -1:
+        return whole("jobs", jobs, least=1)
+    return os.cpu_count() or 1
+
+
+def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
+    """Numbers of cases to run together: of one catenary, of similar length, no more than fill the slots."""
+    if settings.method != "linearised":
+        return [[i] for i in cases]
+    groups: dict[Catenary, list[int]] = {}
+    for i, case in cases.items():
+        groups.setdefault(case.catenary, []).append(i)
+    tasks = []
+    for group in groups.values():
+        group.sort(key=lambda i: cases[i].speed)
+        parts = max(int(np.ceil(len(group) / SLOTS)), min(workers // len(groups), len(group)))
+        tasks += [part.tolist() for part in np.array_split(group, parts)]
+    return tasks
+
+
+def _spread(
+    tasks: Sequence[list[int]],
+    cases: Mapping[int, SweepCase],
+    settings: SweepSettings,
+    workers: int,
+    scheduler: str | None,
+) -> Iterator[tuple[list[int], list[Record]]]:
+    """Results of the tasks as they come.
+
+    Where a worker process dies, what is not finished is tried again; where more of them die, with half as
+    many at a time. A case whose process dies while it runs alone is recorded as lost.
+    """
+    left, deaths = [list(task) for task in tasks], 0
+    while left:
+        alone = deaths > 0 and workers == 1
+        batch = left[:1] if alone else list(left)
+        processes = max(2, workers) if deaths else min(workers, len(batch))  # one: in this process
+        try:
+            for numbers, found in _in_parallel(batch, cases, settings, processes, scheduler):
+                left.remove(numbers)
+                yield numbers, found
+        except _deadly(scheduler):
+            deaths += 1
+            _log.warning("a worker process died; what it was at is tried again")
+            if not alone:
+                workers = workers if deaths == 1 and workers > 1 else max(1, workers // 2)
+            elif len(batch[0]) > 1:
+                left[:1] = [[number] for number in batch[0]]
+            else:
+                yield left.pop(0), [_lost()]
+
+
+def _in_parallel(
+    tasks: Sequence[list[int]],
+    cases: Mapping[int, SweepCase],
+    settings: SweepSettings,
+    processes: int,
+    scheduler: str | None,
+) -> Iterator[tuple[list[int], list[Record]]]:
+    from joblib import Parallel, delayed
+
+    with _engine(scheduler), _manager_may_stumble():
+        parallel = Parallel(
+            n_jobs=-1 if scheduler else processes,
+            return_as="generator_unordered",
+            batch_size=1,
+            pre_dispatch="all",
+        )
+        yield from parallel(delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C goes to all processes of a terminal: the one that started the others ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _manager_may_stumble() -> Iterator[None]:
+    """Say nothing where work that is taken away at an interruption trips up the thread that hands it out.
+
+    Nor that it is taken away.
+    """
+    usual = threading.excepthook
+
+    def hook(caught: threading.ExceptHookArgs) -> None:
+        if not (type(caught.thread).__name__ == "_ExecutorManagerThread" and caught.exc_type is KeyError):
+            usual(caught)
+
+    threading.excepthook = hook
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
+            yield
+    finally:
+        threading.excepthook = usual
+
+
+def _deadly(scheduler: str | None) -> tuple[type[Exception], ...]:
+    """What is raised where a worker process dies."""
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    if scheduler is None:
+        return (TerminatedWorkerError,)
+    from dask.distributed import KilledWorker
+
+    return TerminatedWorkerError, KilledWorker
+
+
+def _lost() -> Record:
+    error = SolverError(
+        "the process that ran this case was killed, also when it ran alone, perhaps for lack of memory; start"
+        " the sweep again to try once more, on a larger machine or with a shorter line"
+    )
+    return _failed(error) | {LOST: True}
+
+
+@contextmanager
+def _engine(scheduler: str | None) -> Iterator[None]:
+    import joblib
+
+    if scheduler is None:
+        with joblib.parallel_config("loky", initializer=_leave_interrupts):
+            yield
+        return
+
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise InputError(
+            f"scheduler {scheduler}: Dask is not installed here; install catenary_fe with the extra 'cluster'"
+        ) from None
+    try:
+        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(f"scheduler {scheduler}: no Dask cluster answers there ({error})") from None
+    with client, joblib.parallel_config("dask"):
+        yield
+
+
+def _run_task(
+    numbers: list[int], cases: Sequence[SweepCase], settings: SweepSettings
+) -> tuple[list[int], list[Record]]:
+    """Run cases of one catenary; what fails is recorded, not raised."""
+    try:
+        with _without_warnings():
+            if settings.method == "linearised":
+                return numbers, _run_together(cases, settings)
+            return numbers, [_run_alone(case, settings) for case in cases]
+    except CatenaryError as error:
+        return numbers, [_failed(error)] * len(numbers)
+    except Exception as error:  # one broken case must not stop the others
+        text = f"unexpected {type(error).__name__}: {error}; please report it"
+        return numbers, [_failed(SolverError(text))] * len(numbers)
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    """They are in the records."""
+    logger = logging.getLogger("catenary_fe")
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
+
+
+def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
+    shape, line = _linearised(cases[0].catenary, settings.mesh, settings.time)
+    records: list[Record] = []
+    good: list[Case] = []
+    for case in cases:
+        try:
+            check_speed(case.speed)
+            plan = plan_run(shape, len(case.pantographs), case.positions or None)
+            first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
+            check_heads(shape, case.pantographs, first, last)
+            doubts = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
+            good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, doubts))
+            records.append({})
+        except CatenaryError as error:
+            records.append(_failed(error))
+    results = iter(line.run(good))
+    return [record or _record(next(results), settings) for record in records]
+
+
+def _run_alone(case: SweepCase, settings: SweepSettings) -> Record:
+    try:
+        shape = _shape(case.catenary, settings.mesh)
+        run = simulate(
+            shape,
+            case.pantographs,
+            speed=case.speed,
+            positions=case.positions or None,
+            time=settings.time,
+            method=settings.method,
+        )
+    except CatenaryError as error:
+        return _failed(error)
+    return _record(run, settings)
+
+
+def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
+    if isinstance(result, CatenaryError):
+        return _failed(result)
+    summary = result.summary(filter=settings.filter)
+    for key in ("wall_s", "real_time_factor"):
+        del summary[key]  # a table is the same whenever and wherever it was computed
+    for i, pantograph in enumerate(summary["pantographs"]):
+        pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
+    return {"summary": summary}
+
+
+def _failed(error: CatenaryError) -> Record:
+    return {"error": str(error), "exit_code": error.exit_code}
+
+
+@lru_cache(maxsize=2)
+def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
+    return find_form(catenary, mesh)
+
+
+@lru_cache(maxsize=2)
+def _linearised(
+    catenary: Catenary, mesh: MeshSettings, time: TimeSettings
+) -> tuple[Shape, LinearisedCatenary]:
+    shape = _shape(catenary, mesh)
+    return shape, LinearisedCatenary(shape, time)

@@ -1,0 +1,373 @@
+"""Every key of every file acts, is refused, or is warned of: each one's value is changed once.
+
+The schemas say which keys there are. A key that is new there has no value here, and fails.
+"""
+
+import copy
+import tomllib
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.engines.linearised.start import chain_of
+from catenary_fe.fe.reduction import linear_model
+from catenary_fe.layout import layout_schema, layout_warnings, pantograph_schema
+from catenary_fe.layout.files import LayoutFile
+from catenary_fe.views.report.tables import _line_table, _pantograph_table, _wire_table
+
+PLANE = """
+name = "two spans in the plane"
+evaluated_spans = [2]
+contact_wire = { library = "AC-120 CuMg", tension = 15e3 }
+messenger_wire = { library = "BzII 70", tension = 12e3, bending_stiffness = 50.0 }
+damping = { alpha = 0.01, beta = 1e-4 }
+dropper = { stiffness = 1e5, damping = 5.0, mass_per_length = 0.1, messenger_clamp_mass = 0.1 }
+[support]
+messenger_stiffness = 5e5
+messenger_damping = 10.0
+steady_arm = { stiffness = 200.0, mass = 0.5, damping = 5.0, preload = 150.0, holds_design_height = false }
+[[span]]
+length = 30.0
+droppers = [6.0, 15.0, { position = 24.0, contact_wire_clamp_mass = 0.1 }]
+count = 2
+"""
+SPACE = """
+name = "two spans in a curve"
+stagger = 0.2
+curve_radius = 900.0
+contact_wire = { mass_per_length = 1.1, axial_stiffness = 1e7, bending_stiffness = 100.0, tension = 15e3 }
+messenger_wire = { mass_per_length = 0.6, axial_stiffness = 8e6, tension = 12e3 }
+[support]
+messenger_lateral_stiffness = 1e5
+messenger_lateral_damping = 10.0
+[support.steady_arm]
+length = 1.0
+mass_per_length = 0.7
+clamp_mass = 0.2
+inclination = 0.1
+[[span]]
+length = 30.0
+droppers = [6.0, 15.0, 24.0]
+count = 2
+"""
+MANY_WIRES = """
+name = "two contact wires, stitch wires"
+spatial = true
+system_height = 1.6
+contact_wire_spacing = 0.04
+contact_wire = { mass_per_length = 1.1, axial_stiffness = 1e7, tension = 15e3 }
+messenger_wire = { mass_per_length = 0.6, axial_stiffness = 8e6, tension = 14e3 }
+support = { steady_arm = { stiffness = 200.0 } }
+[stitch_wire]
+library = "BzII 35"
+tension = 2.5e3
+length = 14.0
+[[span]]
+length = 40.0
+droppers = [4.0, 12.0, 20.0, 28.0, 36.0]
+count = 2
+"""
+BASES = {name: tomllib.loads(text) for name, text in
+         (("plane", PLANE), ("space", SPACE), ("many wires", MANY_WIRES))}  # fmt: skip
+
+WIRE = {
+    "mass_per_length": 1.3, "tension": 13e3, "axial_stiffness": 9e6, "bending_stiffness": 150.0,
+    "name": "another", "source": "elsewhere", "library": "BzII 120",
+}  # fmt: skip
+ARM = {
+    "stiffness": 300.0, "mass": 0.8, "damping": 9.0, "length": 1.2, "mass_per_length": 1.0, "clamp_mass": 0.4,
+    "inclination": 0.15, "side": "left", "holds_design_height": False, "preload": 170.0, "uplift_room": 0.1,
+}  # fmt: skip
+SUPPORT = {
+    "messenger_stiffness": 4e5, "messenger_damping": 20.0, "messenger_lateral_stiffness": 2e5,
+    "messenger_lateral_damping": 20.0, "system_height": 1.3, "stagger": 0.1, "messenger_stagger": 0.05,
+    "stitch_wire": False,
+}  # fmt: skip
+DROPPER = {
+    "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
+    "messenger_clamp_mass": 0.3, "contact_wire_clamp_mass": 0.3, "height_offset": -0.005, "contact_wire": 2,
+}  # fmt: skip
+LAYOUT: dict[str, Any] = {
+    "name": "another", "source": "elsewhere", "contact_wire_spacing": 0.06, "stagger": 0.25,
+    "curve_radius": 700.0, "contact_wire_height": 5.5, "system_height": 1.3, "evaluated_spans": [1],
+    "spatial": True, "damping.alpha": 0.02, "damping.beta": 2e-4,
+    "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
+} | {
+    f"{place}.{key}": value
+    for places, values in (
+        (("contact_wire", "messenger_wire"), WIRE),
+        (("stitch_wire",), WIRE | {"tension": 2e3, "length": 12.0, "clamp_mass": 0.2}),
+        (("dropper", "span.droppers"), DROPPER),
+        (("support", "supports"), SUPPORT),
+        (("support.steady_arm", "supports.steady_arm"), ARM),
+    )
+    for place in places
+    for key, value in values.items()
+}  # fmt: skip
+PANTOGRAPH: dict[str, Any] = {
+    "name": "another", "source": "elsewhere", "stages.mass": 8.0, "stages.stiffness": 5e3,
+    "stages.damping": 20.0, "uplift_force": 130.0, "mean_force": "EN 50367 DC 3 kV",
+    "aerodynamic_force.quadratic": 0.02, "aerodynamic_force.linear": 0.2, "contact_stiffness": 6e4,
+    "contact_damping": 5.0, "head.width": 1.0, "head.spring_distance": 0.6, "head.roll_inertia": 2.0,
+    "head.strips": 1, "head.strip_distance": 0.4,
+}  # fmt: skip
+ELASTIC: dict[str, Any] = {"force": 250.0, "stiffness": 900.0, "law": [[0.0, 150.0], [0.1, 90.0]]}
+
+
+def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Iterator[str]:
+    """Places of all values that a schema knows, without the numbers of lists."""
+    node = schema["$defs"][node["$ref"].rsplit("/", 1)[1]] if "$ref" in node else node
+    if "properties" in node:
+        for name, inner in node["properties"].items():
+            yield from keys(schema, inner, f"{place}.{name}" if place else name)
+        return
+    branches = node.get("anyOf", []) + node.get("allOf", [])  # the latter by old versions of pydantic
+    branches += [node["items"]] if "items" in node else []
+    tables = [b for b in branches if "$ref" in b or "items" in b]
+    inside = [k for b in tables for k in keys(schema, b, place)]
+    yield from inside or [place]
+
+
+@pytest.mark.parametrize(
+    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
+)
+def test_a_value_is_known_for_every_key(schema, known):
+    assert sorted(set(keys(schema, schema))) == sorted(known)
+
+
+def put(record: dict[str, Any], place: str, value: Any) -> dict[str, Any]:
+    """A copy of a record with one value changed; of lists, in the first member."""
+    record = copy.deepcopy(record)
+    *parents, last = place.split(".")
+    owner = record
+    for name in parents:
+        inner = owner.setdefault(name, [{"at": 2}] if name == "supports" else {})
+        if isinstance(inner, list):
+            if not isinstance(inner[0], dict):
+                inner[0] = {"position": inner[0]}
+            inner = inner[0]
+        owner = inner
+    owner[last] = value
+    return record
+
+
+def line_of(record: dict[str, Any]) -> cf.Catenary:
+    try:
+        return LayoutFile.model_validate(record).catenary()
+    except ValueError as error:
+        assert isinstance(error, cf.InputError) or "validation error" in str(error)
+        raise cf.InputError(str(error)) from None
+
+
+def shown(line: cf.Catenary) -> str:
+    """What a report says of a line."""
+    return str((line.name, _line_table(line), _wire_table(line)))
+
+
+def computed(line: cf.Catenary) -> Iterator[Any]:
+    """What a line results in, cheap things first: if one of these differs, more need not be looked at."""
+    yield line.spans_to_evaluate
+    yield [support.steady_arm and support.steady_arm.uplift_room for support in line.supports[1:-1]]
+    shape = cf.find_form(line)
+    yield shape.dropper_schedule()
+    yield [wire.z.round(9).tolist() for wire in shape.wires]
+    model = linear_model(line, shape.mesh, shape.installation)
+    weights = np.cos(np.arange(model.size))
+    for matrix in (model.mass, model.damping, model.stiffness):
+        yield float(weights @ (matrix @ weights))
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, list[Any]]:
+    """Of the base layouts, as far as they were asked for."""
+    return {name: list(computed(line_of(record))) for name, record in BASES.items()}
+
+
+def outcome(base: str, place: str, results: dict[str, list[Any]]) -> str:
+    """What a change of one key's value does on a base layout."""
+    before = line_of(BASES[base])
+    try:
+        line = line_of(put(BASES[base], place, LAYOUT[place]))
+        if line == before:
+            return "read and not used"
+        if place.split(".")[-1] in ("name", "source"):
+            return "shown" if shown(line) != shown(before) else "silent"
+        differ = any(a != b for a, b in zip(computed(line), results[base], strict=True))
+    except cf.InputError:
+        return "refused"
+    if differ:
+        return "acts"
+    return "warned of" if layout_warnings(line) != layout_warnings(before) else "silent"
+
+
+# where a key is not active in the plane
+ELSEWHERE = {
+    "contact_wire_spacing": "many wires", "stitch_wire": "many wires", "contact_wire": "many wires",
+    "stagger": "space", "curve_radius": "space", "messenger_lateral_stiffness": "space",
+    "messenger_lateral_damping": "space", "messenger_stagger": "space", "length": "space",
+    "mass_per_length": "space", "clamp_mass": "space", "inclination": "space", "side": "space",
+    "holds_design_height": "many wires",
+}  # fmt: skip
+REFUSED = {
+    "dropper.position": "each span has its own", "support.stagger": "the layout's alternates",
+    "support.steady_arm.side": "half of the links would push", "span.droppers.length": "others have none",
+}  # fmt: skip
+
+
+def base_of(place: str) -> str:
+    owner, _, last = place.rpartition(".")
+    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers"):
+        of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
+        return ELSEWHERE.get(last, "plane") if last in ("contact_wire", "curve_radius") else of_owner
+    return ELSEWHERE.get(last, "plane")
+
+
+@pytest.mark.parametrize("place", [p for p in LAYOUT if not p.startswith(("supports.", "span.droppers."))])
+def test_a_key_of_a_layout_acts(place, results):
+    expected = "shown" if place.split(".")[-1] in ("name", "source") else "acts"
+    assert outcome(base_of(place), place, results) == ("refused" if place in REFUSED else expected)
+
+
+@pytest.mark.parametrize("place", [p for p in LAYOUT if p.startswith(("supports.", "span.droppers."))])
+def test_a_key_of_one_support_or_dropper_reaches_it(place):
+    """What it does there is what it does in all."""
+    base = BASES[base_of(place)]
+    before, line = line_of(base), line_of(put(base, place, LAYOUT[place]))
+    if place == "supports.at":
+        assert line == before  # an entry with nothing in it
+        return
+    parts = (
+        (line.supports, before.supports) if place.startswith("supports") else (line.droppers, before.droppers)
+    )
+    changed = [a for a, b in zip(*parts, strict=True) if a != b]
+    found = changed[0].steady_arm if "steady_arm" in place else changed[0]
+    assert getattr(found, place.split(".")[-1]) == LAYOUT[place]
+    assert len(changed) == (1 if place.startswith("supports") else 2)  # in both spans of this kind
+
+
+STRIPS = {"spring_distance": 0.7, "strips": 2, "strip_distance": 0.5}
+STAGES = [{"mass": 7.0, "stiffness": 4e3, "damping": 10.0}, {"mass": 14.0, "stiffness": 50.0}]
+PUSHED = {"name": "pushed", "uplift_force": 120.0, "stages": STAGES, "head": STRIPS}
+SET = {"name": "set", "mean_force": "EN 50367 AC", "stages": STAGES}
+
+
+def known_of(pantograph: cf.Pantograph) -> list[Any]:
+    """What is computed from a pantograph before it runs."""
+    chain = chain_of(SimpleNamespace(in_space=True, contacts=[0, 1]), pantograph)
+    touches = [(t.wire, t.ahead, t.heave.tolist(), t.roll.tolist()) for t in chain.touches]
+    found = [chain.M.tolist(), chain.K.tolist(), chain.D.tolist(), chain.load.tolist(), touches]
+    found += [chain.contact_stiffness, chain.contact_damping]
+    return [*found, pantograph.static_uplift(70.0), pantograph.target_mean_force(70.0)]
+
+
+@pytest.mark.parametrize("place", PANTOGRAPH)
+def test_a_key_of_a_pantograph_acts(place):
+    base = SET if place == "mean_force" else PUSHED
+    before, changed = cf.Pantograph(**base), put(base, place, PANTOGRAPH[place])
+    if place == "head.strips":
+        with pytest.raises(cf.InputError, match="strips = 2 and strip_distance belong together"):
+            cf.Pantograph(**changed)
+        return
+    after = cf.Pantograph(**changed)
+    if place in ("name", "source"):
+        assert str(_pantograph_table(after.name, after)) != str(_pantograph_table(before.name, before))
+    else:
+        assert known_of(after) != known_of(before)
+
+
+INERT = {  # values that change nothing on a line, and what is said
+    "messenger_lateral_stiffness in the plane": (
+        "plane", {"support.messenger_lateral_stiffness": 1e5}, "has no effect in the vertical plane"
+    ),
+    "no stitch wires": ("plane", {"support.stitch_wire": False}, "the line has no stitch wires"),
+    "no support for a stitch wire": (
+        "many wires", {"support.stitch_wire": False}, "stitch_wire has no effect"
+    ),
+    "a sag between two droppers": (
+        "plane", {"span.pre_sag": 0.05, "span.droppers": [6.0, 24.0]}, "pre_sag = 0.05 m has no effect"
+    ),
+    "a sag where heights are given": (
+        "plane", {"span.pre_sag": 0.05, "dropper.height_offset": 0.0}, "pre_sag = 0.05 m has no effect"
+    ),
+    "an arm of a line's end": (
+        "plane", {"supports.at": 1, "supports.steady_arm.stiffness": 900.0}, "support 1: steady_arm has no"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", INERT)
+def test_what_changes_nothing_is_warned_of(case):
+    base, changes, said = INERT[case]
+    record = BASES[base]
+    for place, value in changes.items():
+        record = put(record, place, value)
+    assert layout_warnings(line_of(BASES[base])) == []
+    (line,) = layout_warnings(line_of(record))
+    assert said in line
+
+
+COMBINED = {  # keys that are at odds, and what is said
+    "stagger twice": ("space", {"support.stagger": 0.1}, "stagger = 0.25 m, .* give one of them"),
+    "both kinds of arm": ("plane", {"supports.steady_arm.stiffness": 9.0, "supports.steady_arm.length": 1.0},
+                          "supports: at = 2: stiffness and length: give exactly one"),
+    "a key of the other kind": ("space", {"supports.steady_arm.mass": 1.0}, "mass has no effect on an arm"),
+    "damping without a spring": (
+        "space", {"supports.messenger_damping": 1.0}, "give messenger_stiffness too"
+    ),
+    "an arm that holds the height": ("plane", {"support.steady_arm.holds_design_height": True},
+                                     "preload = 150 N has no effect"),
+    "a length for some droppers": (
+        "plane", {"span.droppers.length": 0.9}, "span 1: dropper 2 at 15 m has no"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", COMBINED)
+def test_keys_at_odds_are_refused(case):
+    base, changes, said = COMBINED[case]
+    record = BASES[base] | ({"stagger": 0.25} if base == "space" else {})
+    for place, value in changes.items():
+        record = put(record, place, value)
+    with pytest.raises(cf.InputError, match=said):
+        cf.find_form(line_of(record))
+
+
+def test_air_beside_a_mean_force_is_refused():
+    with pytest.raises(cf.InputError, match="aerodynamic_force has no effect beside mean_force"):
+        cf.Pantograph(**SET, aerodynamic_force={"linear": 0.1})
+
+
+def arms(text: str) -> list[cf.SteadyArm]:
+    record = tomllib.loads(PLANE + text)
+    return [support.steady_arm for support in line_of(record).supports]
+
+
+def test_an_arm_of_one_support_keeps_what_it_does_not_change():
+    common, arm, _ = arms("[[supports]]\nat = 2\nsteady_arm = { stiffness = 400, uplift_room = 0.2 }")
+    assert arm == common.replace(stiffness=400.0, uplift_room=0.2)
+
+
+def test_an_arm_of_the_other_kind_keeps_the_room_alone():
+    text = "[[supports]]\nat = 2\nstagger = 0.2\nsteady_arm = { length = 1.1 }"
+    record = put(tomllib.loads(PLANE + text), "support.steady_arm.uplift_room", 0.15)
+    assert line_of(record).supports[1].steady_arm == cf.SteadyArm(length=1.1, uplift_room=0.15)
+
+
+def test_an_arm_that_holds_the_height_drops_the_preload_of_the_others():
+    _, arm, _ = arms("[[supports]]\nat = 2\nsteady_arm = { holds_design_height = true }")
+    assert (arm.holds_height, arm.preload, arm.mass) == (True, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("key", ELASTIC)
+def test_a_key_of_an_elastic_pantograph_acts(key):
+    base: dict[str, Any] = {"force": 200.0, "stiffness": 500.0}
+    changed = {key: ELASTIC[key]} if key == "law" else base | {key: ELASTIC[key]}
+    before, after = (cf.ElasticPantograph.model_validate(record) for record in (base, changed))
+    assert [before.contact_force(z) for z in (0.0, 0.05)] != [after.contact_force(z) for z in (0.0, 0.05)]
+    if key == "law":  # beside a force, it is refused
+        with pytest.raises(cf.InputError, match="give exactly one"):
+            cf.ElasticPantograph(**base, law=ELASTIC["law"])

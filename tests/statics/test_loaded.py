@@ -1,0 +1,60 @@
+"""Static loads: lifts by corrected influence against Newton's method on the whole line, and reciprocity."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.statics import loaded
+from catenary_fe.statics.loaded import LoadedLine
+
+LAYOUTS = Path(__file__).parents[2] / "models" / "layouts"
+
+
+def first_spans(name: str, count: int) -> cf.Catenary:
+    whole = cf.load_catenary(LAYOUTS / f"{name}.toml")
+    middle = (count // 2,)
+    return whole.replace(
+        spans=whole.spans[:count], supports=whole.supports[: count + 1], evaluated_spans=middle
+    )
+
+
+# bars that turn and stitch wires; droppers that go slack, two contact wires
+@pytest.mark.parametrize("name", ["re330", "dc_3kv_twin"])
+def test_lifts_are_those_of_the_whole_line(name, monkeypatch):
+    line = LoadedLine(cf.find_form(first_spans(name, 9)))
+    supports = line.shape.catenary.support_positions
+    x = np.linspace(supports[4], supports[5], 5)
+    monkeypatch.setattr(LoadedLine, "_lift", lambda *_: pytest.fail("corrections did not settle"))
+    lifts = line.lifts(x, 200.0)
+    whole = [line.load([at], [1.0]) @ line.solve([at], [200.0]) for at in x]
+    assert lifts == pytest.approx(whole, rel=4e-4)
+    at_rest = line.system.tangent(0 * line.system.reference).tocsc()
+    from scipy.sparse.linalg import spsolve
+
+    load = line.system.gather(line.load([x[0]], [1.0]))
+    linear = 200 * load @ spsolve(at_rest, load)
+    assert abs(linear / whole[0] - 1) > 5e-3  # negative control: the tangent at rest alone will not do
+
+
+def test_lifts_that_do_not_settle_are_solved_for_one_by_one(monkeypatch, short_shape):
+    line = LoadedLine(short_shape)
+    x = np.array([60.0, 90.0])
+    expected = line.lifts(x, 150.0)
+    monkeypatch.setattr(loaded, "_CORRECTIONS", 1)
+    assert line.lifts(x, 150.0) == pytest.approx(expected, rel=2e-4)
+
+
+def test_a_force_far_beyond_the_wires_is_an_error_with_its_place(short_shape):
+    with pytest.raises(
+        cf.SolverError, match=r"static load .* wire at \d+\.\d m along the line; try a smaller"
+    ):
+        cf.solve_statics(short_shape, [(100.0, 1e9)])
+
+
+def test_what_one_force_does_to_another_place_is_mutual(short_shape):
+    """Maxwell and Betti, on the line at rest and in small motions."""
+    line = LoadedLine(short_shape)
+    near, far = line.load([70.0], [1.0]), line.load([100.0], [1.0])
+    assert near @ line.solve([100.0], [0.1]) == pytest.approx(far @ line.solve([70.0], [0.1]), rel=1e-4)
