@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.exudyn.run import Trip, drive
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.studies.linearised import LinearisedLine
 
 SPEED, STEPS = 275 / 3.6, 300
 
@@ -30,7 +31,7 @@ def test_the_first_steps_agree(reference_layout, layout):
     start = np.array([line.support_positions[1] - 12.0])  # past an arm, where the wire turns
     trip = Trip(SPEED, start, STEPS, cf.TimeSettings(tolerance=1e-5))
     theirs = drive(line, shape.mesh, shape.installation, [(pantograph, 140.0)], trip)
-    (ours,) = LinearisedCatenary(shape).run([Case([pantograph], SPEED, start, STEPS * SPEED * 1e-3)])
+    (ours,) = LinearisedLine(shape).run([RunCase([pantograph], SPEED, start, (STEPS + 0.5) * SPEED * 1e-3)])
     assert isinstance(ours, cf.Run)
     force = theirs.contact_force
     spread = np.std(force)
