@@ -9,6 +9,7 @@ from pydantic import field_validator, model_validator
 
 from catenary_fe.layout.arguments import number
 from catenary_fe.layout.current_collection import MeanForceRule, target_mean_force
+from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import (
     NonEmpty,
     NonNegative,
@@ -18,6 +19,7 @@ from catenary_fe.layout.parameters import (
     Text,
     shorten,
 )
+from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Joint, Strip, Substructure
 
 
 class Stage(Parameters):
@@ -123,13 +125,75 @@ class Pantograph(Parameters):
             )
         return self
 
+    @property
+    def panhead(self) -> Panhead:
+        """What the head is, be it given or the usual one."""
+        return self.head or Panhead()
+
+    def assemble(self, *, spatial: bool) -> Substructure:
+        """Its bodies, joints, strips and contact law; two strips share the head's mass, spring and damper.
+
+        spatial : whether the line has coordinates across the track, in which a head on two springs rolls
+        """
+        head, first, count = self.panhead, self.stages[0], self.panhead.strips
+        lever = head.spring_distance / 2 if head.spring_distance and spatial else 0.0
+        inertia = head.rolling_inertia(first.mass) / count if lever else None
+        below = [*range(count, count + len(self.stages) - 1), BASE]
+        joints = [
+            Joint(i, below[0], first.stiffness / count, first.damping / count, lever) for i in range(count)
+        ]
+        joints += [
+            Joint(i, lower, stage.stiffness, stage.damping)
+            for i, lower, stage in zip(below, below[1:], self.stages[1:], strict=False)
+        ]
+        strips = [Body(first.mass / count, inertia)] * count
+        single = len(self.stages) == 1
+        apart = head.strip_distance or 0.0
+        return Substructure(
+            bodies=(*strips, *(Body(stage.mass) for stage in self.stages[1:])),
+            joints=tuple(joints),
+            lifted=(1 / count,) * count if single else (0.0,) * (len(below) + count - 2) + (1.0,),
+            strips=tuple(Strip(apart * (0.5 - i) if count > 1 else 0.0, i) for i in range(count)),
+            contact=ContactLaw(self.contact_stiffness, self.contact_damping),
+        )
+
+    def in_words(self) -> list[tuple[str, str]]:
+        """Names and values, for a table."""
+        air, force = self.aerodynamic_force, self.uplift_force
+        names = ["mass 1 (head)", *(f"mass {n}" for n in range(2, len(self.stages) + 1))]
+        return [
+            ("source", self.source or "not given"),
+            *(
+                (name, f"{s.mass:g} kg on {s.stiffness:g} N/m, {s.damping:g} N s/m")
+                for name, s in zip(names, self.stages, strict=True)
+            ),
+            ("mean force to reach", str(self.mean_force))
+            if force is None
+            else ("uplift force", f"{force:g} N"),
+            ("force of the air", f"{air.quadratic:g} V² + {air.linear:g} V (N, m/s)"),
+            ("contact", f"{self.contact_stiffness:g} N/m, {self.contact_damping:g} N s/m, no tension"),
+        ]
+
     def static_uplift(self, speed: float) -> float:
-        """[N] upward force on the lowest mass at a speed in m/s; for a mean force, the first guess."""
-        if self.uplift_force is not None:
-            return self.uplift_force + self.aerodynamic_force.at(speed)
-        target = self.target_mean_force(speed)
-        assert target is not None
-        return target
+        """[N] upward force on the lowest mass at a speed in m/s; for a mean force, the first guess.
+
+        Raises InputError where uplift and aerodynamic force push it down.
+        """
+        if self.uplift_force is None:
+            target = self.target_mean_force(speed)
+            assert target is not None
+            return target
+        uplift = self.uplift_force + self.aerodynamic_force.at(speed)
+        if uplift <= 0:
+            raise InputError(
+                f"{self.name}: uplift and aerodynamic force add up to {uplift:.6g} N at {3.6 * speed:g} km/h:"
+                " must be above 0, or the head stays down; change uplift_force or aerodynamic_force"
+            )
+        return uplift
+
+    def with_uplift(self, uplift: float) -> Self:
+        """The same pantograph with this uplift force [N] alone. Raises InputError."""
+        return self.replace(uplift_force=uplift, mean_force=None, aerodynamic_force=AerodynamicForce())
 
     def target_mean_force(self, speed: float) -> float | None:
         """[N] mean contact force to reach at a speed in m/s; None with a given uplift."""
@@ -188,9 +252,41 @@ class ElasticPantograph(Parameters):
                 return strong + slope * low, slope
         return self.law[0 if elevation < self.law[0][0] else -1][1], 0.0
 
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """None: it has no masses."""
+        return ()
+
+    @property
+    def head(self) -> None:
+        """None: it is a point."""
+        return None
+
+    @property
+    def panhead(self) -> Panhead:
+        """The usual one."""
+        return Panhead()
+
+    def assemble(self, *, spatial: bool) -> Substructure:
+        """One strip without mass at the nominal contact wire height, and the law."""
+        law = ContactLaw(self.stiffness, preload=self.force or 0.0, points=self.law)
+        return Substructure((), (), (), (Strip(),), law)
+
+    def in_words(self) -> list[tuple[str, str]]:
+        """Names and values, for a table."""
+        law = f"points {list(self.law)}" if self.law else f"{self.force:g} N"
+        return [
+            ("source", self.source or "not given"),
+            ("force", f"{law}, falling by {self.stiffness:g} N/m"),
+        ]
+
     def static_uplift(self, speed: float) -> float:
         """[N] on a wire at its nominal height, at any speed."""
         return self.contact_force(0.0)
+
+    def with_uplift(self, uplift: float) -> Self:
+        """Itself: the law decides."""
+        return self
 
     def target_mean_force(self, speed: float) -> None:
         """None: the law decides the mean force."""

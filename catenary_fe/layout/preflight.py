@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary
-from catenary_fe.layout.pantograph import AnyPantograph, ElasticPantograph
+from catenary_fe.layout.pantograph import AnyPantograph
 from catenary_fe.layout.parameters import Parameters
 
 Range = tuple[float, float, str]
@@ -165,7 +165,7 @@ def pantograph_warnings(pantograph: AnyPantograph, speed: float) -> list[str]:
             f"{name}: pushes with {force:.4g} N at {3.6 * speed:g} km/h; pantographs push with 20 to 400 N:"
             " look at the units of uplift_force and aerodynamic_force"
         )
-    if isinstance(pantograph, ElasticPantograph):
+    if not pantograph.stages:
         return found
     masses = [stage.mass for stage in pantograph.stages]
     if not 1 <= masses[0] <= 60 or sum(masses) > 300:

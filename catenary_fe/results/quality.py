@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import Pantograph
+from catenary_fe.layout import AnyPantograph
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 
@@ -61,8 +61,8 @@ def run_checks(run: Run) -> tuple[Check, ...]:
     return tuple(check for each in checks for check in each(run))
 
 
-def _lumped(run: Run) -> list[tuple[int, Pantograph]]:
-    return [(i, p) for i, p in enumerate(run.pantographs) if isinstance(p, Pantograph)]
+def _lumped(run: Run) -> list[tuple[int, AnyPantograph]]:
+    return [(i, p) for i, p in enumerate(run.pantographs) if p.stages]
 
 
 def _name(run: Run, pantograph: int) -> str:

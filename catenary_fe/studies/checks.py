@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.layout import AnyPantograph, ElasticPantograph, InputError, Panhead, Pantograph
+from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.parameters import shorten
 from catenary_fe.layout.preflight import layout_warnings, pantograph_warnings
@@ -55,14 +55,14 @@ def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float
     """
     wires, faults = shape.contact_wires, []
     for pantograph in pantographs:
-        if isinstance(pantograph, ElasticPantograph):
+        if not pantograph.stages:
             if len(wires) > 1:
                 faults.append(
                     f"{pantograph.name}: an elastic pantograph has one force for one contact wire, the layout"
                     " has two; take a pantograph of masses"
                 )
             continue
-        half = (pantograph.head or Panhead()).width / 2
+        half = pantograph.panhead.width / 2
         for wire in wires:
             x = np.linspace(start, end, max(2, int(np.ceil(end - start)) + 1))
             x = np.union1d(x, wire.x[(wire.x >= start) & (wire.x <= end)])
@@ -95,7 +95,7 @@ def run_warnings(
         found += dict.fromkeys(
             f"{p.name}: head.spring_distance has no effect in the vertical plane, where no head rolls"
             for p in pantographs
-            if isinstance(p, Pantograph) and p.head and p.head.spring_distance
+            if p.head and p.head.spring_distance
         )
     if speed > WAVE_SPEED_SHARE * wave_speed:
         found.append(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.checkpoint import Checkpoint
-from catenary_fe.layout import AerodynamicForce, AnyPantograph, InputError, Pantograph, SolverError
+from catenary_fe.layout import AnyPantograph, SolverError
 from catenary_fe.layout.current_collection import MEAN_FORCE_TOLERANCE
 from catenary_fe.results import Run
 
@@ -29,7 +29,7 @@ class MeanForce:
     """
 
     def __init__(self, pantographs: Sequence[AnyPantograph], speed: float) -> None:
-        self.uplifts = _uplifts(pantographs, speed)
+        self.uplifts = np.array([p.static_uplift(speed) for p in pantographs])
         self._pantographs = pantographs
         self._targets = [p.target_mean_force(speed) for p in pantographs]
         self.sought = any(target is not None for target in self._targets)
@@ -60,12 +60,8 @@ class MeanForce:
 
     def given(self) -> list[AnyPantograph]:
         """The pantographs with these uplifts, not asking for a mean force. Raises InputError."""
-        still = AerodynamicForce()
         return [
-            p.replace(uplift_force=float(uplift), mean_force=None, aerodynamic_force=still)
-            if isinstance(p, Pantograph)
-            else p
-            for p, uplift in zip(self._pantographs, self.uplifts, strict=True)
+            p.with_uplift(float(uplift)) for p, uplift in zip(self._pantographs, self.uplifts, strict=True)
         ]
 
     def aim(self, run: Run) -> float:
@@ -115,17 +111,3 @@ class MeanForce:
         moved = np.abs(step) > TOO_SMALL
         secant = (means - self._before[1]) / np.where(moved, step, 1.0)
         return np.where(moved & (secant > low) & (secant < high), secant, slope)
-
-
-def _uplifts(pantographs: Sequence[AnyPantograph], speed: float) -> Floats:
-    """[N], shape (pantographs,): forces on the lowest masses, the air's included."""
-    uplifts = np.array([p.static_uplift(speed) for p in pantographs])
-    faults = [
-        f"{pantograph.name}: uplift and aerodynamic force add up to {uplift:.6g} N at {3.6 * speed:g} km/h:"
-        " must be above 0, or the head stays down; change uplift_force or aerodynamic_force"
-        for pantograph, uplift in zip(pantographs, uplifts, strict=True)
-        if isinstance(pantograph, Pantograph) and uplift <= 0
-    ]
-    if faults:
-        raise InputError(*faults)
-    return uplifts

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.layout import AnyPantograph, Catenary, ElasticPantograph, InputError
+from catenary_fe.layout import AnyPantograph, Catenary, InputError
 
 PROGRAM = 320e6  # [bytes] of the program itself with its libraries
 A_NODE = 2e4  # [bytes] of a node in the model and its factors
@@ -61,7 +61,7 @@ def demand(
     shapes : stored shapes of the whole wires
     slots : runs side by side in one process
     """
-    masses = max(0 if isinstance(p, ElasticPantograph) else len(p.stages) for p in pantographs)
+    masses = max(len(p.stages) for p in pantographs)
     each = len(pantographs) * (3 + max(masses, 1)) + len(catenary.droppers) + len(catenary.supports) + 1
     nodes = int(mesh.first_nodes[-1])
     histories, wires = 8.0 * each * (steps + 1), 4.0 * nodes * shapes

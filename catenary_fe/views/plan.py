@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.layout import AnyPantograph, Panhead, Pantograph, arguments
+from catenary_fe.layout import AnyPantograph, Panhead, arguments
 from catenary_fe.layout.arguments import checked
 from catenary_fe.statics import Shape
 from catenary_fe.views.lines import draw_lines, hanging_lines
@@ -50,7 +50,7 @@ def plot_plan(
 
 def head_width(pantographs: Iterable[AnyPantograph]) -> float:
     """[m] of the working part of the first head that is described; else of the usual one."""
-    heads = (p.head for p in pantographs if isinstance(p, Pantograph) and p.head)
+    heads = (p.head for p in pantographs if p.head)
     return next(heads, Panhead()).width
 
 

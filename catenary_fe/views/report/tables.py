@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Pantograph, Wire, counted
+from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing, labels
 from catenary_fe.results.csv_files import cell, common_name, decimals_of
 from catenary_fe.results.signal import CUT_OFF, FilterKind
@@ -291,33 +291,7 @@ def _wire_table(catenary: Catenary) -> Table:
 
 
 def _pantograph_table(name: str, pantograph: AnyPantograph) -> Table:
-    rows: list[tuple[str, str]] = [("source", pantograph.source or "not given")]
-    if isinstance(pantograph, Pantograph):
-        rows += [
-            (
-                f"mass {n}{' (head)' if n == 1 else ''}",
-                f"{s.mass:g} kg on {s.stiffness:g} N/m, {s.damping:g} N s/m",
-            )
-            for n, s in enumerate(pantograph.stages, start=1)
-        ]
-        force = pantograph.uplift_force
-        rows.append(
-            ("uplift force", f"{force:g} N")
-            if force is not None
-            else ("mean force to reach", str(pantograph.mean_force))
-        )
-        air = pantograph.aerodynamic_force
-        rows.append(("force of the air", f"{air.quadratic:g} V² + {air.linear:g} V (N, m/s)"))
-        rows.append(
-            (
-                "contact",
-                f"{pantograph.contact_stiffness:g} N/m, {pantograph.contact_damping:g} N s/m, no tension",
-            )
-        )
-    else:
-        law = f"points {list(pantograph.law)}" if pantograph.law else f"{pantograph.force:g} N"
-        rows.append(("force", f"{law}, falling by {pantograph.stiffness:g} N/m"))
-    return Table(f"Pantograph {name}", ("", "value"), rows)
+    return Table(f"Pantograph {name}", ("", "value"), pantograph.in_words())
 
 
 def _settings_table(run: Run) -> Table:

@@ -1,0 +1,178 @@
+"""What a pantograph is to the engines: bodies on springs, strips, and a contact law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+BASE = -1  # number of the base, which moves along the track at constant height
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body that moves up and down, and perhaps rolls about the track's direction.
+
+    mass : [kg]
+    inertia : [kg m²] of a body that rolls; unset: it stays level
+    """
+
+    mass: float
+    inertia: float | None = None
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A spring and damper between two bodies, or a body and the base.
+
+    upper, lower : numbers of the bodies; the lower one may be ``BASE``
+    stiffness, damping : [N/m], [N s/m]
+    lever : [m] sideways from the middle to each half of the spring, against which the upper body rolls
+    """
+
+    upper: int
+    lower: int
+    stiffness: float
+    damping: float
+    lever: float = 0.0
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A collector strip.
+
+    ahead : [m] of the pantograph's position
+    body : number of the body that carries it; unset: none, its height is the nominal contact wire height
+    """
+
+    ahead: float = 0.0
+    body: int | None = None
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """Force between strip and wire: max(0, preload + stiffness · depth), with a damper that never pulls.
+
+    stiffness, damping : [N/m], [N s/m]
+    preload : [N] at the depth 0
+    points : pairs of the wire's height above the strip [m] and force [N], straight between, constant
+        outside, in the place of the straight law
+    """
+
+    stiffness: float
+    damping: float = 0.0
+    preload: float = 0.0
+    points: tuple[tuple[float, float], ...] = ()
+
+    def force(self, depth: float) -> float:
+        """[N] at a depth [m] of the strip above the wire, at rest."""
+        if self.points:
+            return float(np.interp(-depth, *np.transpose(self.points)))
+        return max(0.0, self.preload + self.stiffness * depth)
+
+    def slope(self, depth: float) -> float:
+        """[N/m] derivative of :meth:`force`."""
+        if not self.points:
+            return self.stiffness if self.preload + self.stiffness * depth > 0 else 0.0
+        heights, forces = np.transpose(self.points)
+        i = int(np.searchsorted(heights, -depth, side="right"))
+        inside = 0 < i < heights.size
+        return float((forces[i - 1] - forces[i]) / (heights[i] - heights[i - 1])) if inside else 0.0
+
+    def energy(self, depth: float) -> float:
+        """[J] integral of :meth:`force` from the depth 0."""
+        if self.points:
+            heights, forces = np.transpose(self.points)
+            at = np.unique([*heights[(heights - 0.0) * (heights + depth) < 0], 0.0, -depth])
+            area = float(np.trapezoid(np.interp(at, heights, forces), at))
+            return area if depth > 0 else -area
+        if not self.stiffness:
+            return self.preload * depth
+        compression = max(0.0, depth + self.preload / self.stiffness)
+        return self.stiffness * compression**2 / 2
+
+
+@dataclass(frozen=True)
+class Substructure:
+    """A pantograph's equations: M ÿ + D ẏ + K y = uplift · load − contact forces · rows of the strips.
+
+    The coordinates y count from the nominal contact wire height, where its springs are force-free: heights
+    [m] of the bodies, then rolls [rad] of those that roll.
+
+    bodies, joints : those that carry strips first
+    lifted : shape (bodies,), share of each in the uplift force
+    strips : collector strips
+    contact : the law between each strip and a wire
+    """
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    lifted: tuple[float, ...]
+    strips: tuple[Strip, ...]
+    contact: ContactLaw
+
+    @cached_property
+    def rolling(self) -> tuple[int, ...]:
+        """Numbers of the bodies that roll."""
+        return tuple(i for i, body in enumerate(self.bodies) if body.inertia is not None)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.bodies) + len(self.rolling)
+
+    @cached_property
+    def mass(self) -> Floats:
+        """M [kg] and [kg m²], shape (size, size)."""
+        inertias = [self.bodies[i].inertia or 0.0 for i in self.rolling]
+        return np.diag(np.array([*(body.mass for body in self.bodies), *inertias]))
+
+    @cached_property
+    def stiffness(self) -> Floats:
+        """K [N/m] and [N m], shape (size, size)."""
+        return self._joined([joint.stiffness for joint in self.joints])
+
+    @cached_property
+    def damping(self) -> Floats:
+        """D [N s/m] and [N m s], shape (size, size)."""
+        return self._joined([joint.damping for joint in self.joints])
+
+    @cached_property
+    def load(self) -> Floats:
+        """Shape (size,): force on each coordinate by an uplift of 1 N."""
+        return np.array([*self.lifted, *(0.0 for _ in self.rolling)])
+
+    def row(self, strip: Strip, lateral: float = 0.0) -> Floats:
+        """Shape (size,): the strip's height over a place [m] to the left, as made of the coordinates."""
+        return self.heave(strip) + lateral * self.roll(strip)
+
+    def heave(self, strip: Strip) -> Floats:
+        """Shape (size,): the height of the strip's middle as made of the coordinates."""
+        row = np.zeros(self.size)
+        if strip.body is not None:
+            row[strip.body] = 1.0
+        return row
+
+    def roll(self, strip: Strip) -> Floats:
+        """Shape (size,): what the strip's height gains with each metre to the left."""
+        row = np.zeros(self.size)
+        if strip.body in self.rolling:
+            row[len(self.bodies) + self.rolling.index(strip.body)] = 1.0
+        return row
+
+    def _joined(self, values: list[float]) -> Floats:
+        total = np.zeros((self.size, self.size))
+        for joint, value in zip(self.joints, values, strict=True):
+            row = np.zeros(self.size)
+            row[joint.upper] = 1.0
+            if joint.lower != BASE:
+                row[joint.lower] = -1.0
+            total += value * np.outer(row, row)
+            if joint.upper in self.rolling:
+                at = len(self.bodies) + self.rolling.index(joint.upper)
+                total[at, at] += value * joint.lever**2
+        return total
