@@ -1,7 +1,7 @@
 """Every engine on every kind of line under every kind of pantograph: the same histories within stated bounds.
 
-The nonlinear engine is what the others are compared with. Lines are three spans of 24 m on the wires, arms and
-droppers of a layout; a run starts at the second support and ends in the last span.
+The nonlinear engine is what the others are compared with. Lines are three spans of 24 m on the wires, arms
+and droppers of a layout; a run starts at the second support and ends in the last span.
 """
 
 from functools import cache
@@ -22,22 +22,22 @@ class Bound(NamedTuple):
     """How far a history may be from the nonlinear one.
 
     exudyn : largest difference, in the history's unit
-    linearised : root mean square of the difference, as a share of that of the history's change since the start
+    linearised : root mean square of the difference, as a share of that of the change since the start
     """
 
     exudyn: float
     linearised: float
 
 
-# Exudyn integrates the same equations by the same rule in the same steps. What differs is where the two Newton
-# iterations stop: at 1e-6 of a step's first residual, which leaves 1 µm, and so 0.05 N in contact springs of
-# 50 kN/m and 0.1 N in droppers of 100 to 200 kN/m. The largest differences of the table are 0.4 to 0.5 of
-# these bounds.
+# Exudyn integrates the same equations by the same rule in the same steps. What differs is where the two
+# Newton iterations stop: at 1e-6 of a step's first residual, which leaves 1 µm, and so 0.05 N in contact
+# springs of 50 kN/m and 0.1 N in droppers of 100 to 200 kN/m. The largest differences of the table are 0.3
+# to 0.5 of these bounds.
 #
-# Linearised runs solve contact and slack droppers exactly; tension, directions of droppers and arms, and where
-# a rolling head meets the wire stay as at rest. Motions of some 50 mm turn droppers of 1 m and arms of 1 m by a
-# few per cent, and a dropper that goes slack a step later has another force in that step. The largest shares
-# of the table are 0.4 to 0.5 of these bounds.
+# Linearised runs solve contact and slack droppers exactly; tension, directions of droppers and arms, and
+# where a rolling head meets the wire stay as at rest. Motions of some 50 mm turn droppers and arms of 1 m by
+# a few per cent, and a dropper that goes slack a step later has another force in that step. The largest
+# shares of the table are 0.4 to 0.5 of these bounds.
 BOUNDS = {
     "contact_force": Bound(0.12, 0.03),  # N
     "wire_height": Bound(3e-6, 0.009),  # m
@@ -95,27 +95,31 @@ PANTOGRAPHS = {
     "elastic, law of points": [cf.ElasticPantograph(law=LAW)],
     "two pantographs": [TWO_STAGES, THREE_STAGES],
 }
-ONLY_EXUDYN = ("elastic, law of points",)  # runs these
-# Exudyn's connector takes the wire's inclination at the step's begin: test_contact_damping bounds what that does
-COMPARED = dict.fromkeys(PANTOGRAPHS, ("exudyn", "linearised")) | {"contact damping": ("linearised",)}
+# Multiples of the bounds for each engine that a pantograph is run with. Exudyn takes the straight piece of a
+# law where it expects the wire at a step's end: at a corner, over which the stiffness changes by 500 N/m,
+# the force is off by 0.3 N. It takes the wire's inclination, on which contact damping acts, where the step
+# begins: by how much that is off has a test of its own.
+COMPARED = {name: {"exudyn": 1.0, "linearised": 1.0} for name in PANTOGRAPHS}
+COMPARED["elastic, law of points"]["exudyn"] = 6.0
+del COMPARED["contact damping"]["exudyn"]
 
 TABLE = [
     (line, pantograph)
     for line in LINES
     for pantograph in PANTOGRAPHS
-    if pantograph not in ONLY_EXUDYN and not (line == "twin wires" and pantograph.startswith("elastic"))
+    if not (line == "twin wires" and pantograph.startswith("elastic"))  # refused: one force, one wire
 ]
 
 
 @cache
-def run(line: str, pantograph: str, method: str, tension: float = 1.0) -> cf.Run:
+def run(line: str, pantograph: str, method: str, tension: float = 1.0, step: float = 2.5e-3) -> cf.Run:
     """tension : of the contact wire, as a multiple of the layout's"""
     catenary, pantographs = LINES[line](), PANTOGRAPHS[pantograph]
     wire = catenary.contact_wire
     shape = cf.find_form(catenary.replace(contact_wire=wire.replace(tension=tension * wire.tension)))
-    time = cf.TimeSettings(step=2.5e-3)
+    time = cf.TimeSettings(step=step)
     if method != "linearised":  # which does not iterate
-        time = cf.TimeSettings(step=2.5e-3, tolerance=1e-6)
+        time = cf.TimeSettings(step=step, tolerance=1e-6)
     return cf.simulate(
         shape, pantographs, speed=SPEED, positions=STARTS[: len(pantographs)], time=time,
         store_wire=0.02, method=method,
@@ -145,9 +149,9 @@ def differences(ours: cf.Run, reference: cf.Run) -> dict[str, float]:
     return found
 
 
-def misses(found: dict[str, float], method: str) -> dict[str, tuple[float, float]]:
-    """Differences that are not within their bounds, with these."""
-    bounds = {name: getattr(BOUNDS[name], method) for name in found}
+def misses(found: dict[str, float], method: str, times: float = 1.0) -> dict[str, tuple[float, float]]:
+    """Differences that are not within so many times their bounds, with these."""
+    bounds = {name: times * getattr(BOUNDS[name], method) for name in found}
     return {name: (off, bounds[name]) for name, off in found.items() if not off <= bounds[name]}
 
 
@@ -155,12 +159,24 @@ def misses(found: dict[str, float], method: str) -> dict[str, tuple[float, float
 def test_engines_agree(line, pantograph):
     reference = run(line, pantograph, "nonlinear")
     assert reference.method == "nonlinear"
-    for method in COMPARED[pantograph]:
+    for method, times in COMPARED[pantograph].items():
         other = run(line, pantograph, method)
         assert other.method == method
-        assert not misses(differences(other, reference), method), method
+        assert not misses(differences(other, reference), method, times), method
         # it was computed anew, not by the same engine under another name
         assert not np.array_equal(other.data["contact_force"], reference.data["contact_force"])
+
+
+def test_with_contact_damping_exudyn_is_off_by_the_order_of_a_step():
+    off = []
+    for step in (1.25e-3, 6.25e-4):
+        ours, theirs = (
+            run("plane", "contact damping", method, step=step).data["contact_force"].values
+            for method in ("nonlinear", "exudyn")
+        )
+        off.append(np.std(theirs - ours) / np.std(ours))
+    assert off[0] < 0.03
+    assert off[1] < 0.6 * off[0]
 
 
 @pytest.mark.parametrize("line", LINES)

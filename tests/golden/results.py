@@ -46,7 +46,7 @@ def curve() -> cf.Catenary:
 def system(shape: cf.Shape) -> Numbers:
     """Norms of mass, damping, stiffness and constant forces over the coordinates that move.
 
-    The norms of whole matrices are almost those of EA; tension, bending and droppers decide the vertical part.
+    EA decides the norms of whole matrices; tension, bending and droppers decide those of the vertical part.
     """
     assembled = assemble(shape.catenary, shape.mesh, shape.installation)
     upwards = np.zeros((assembled.reference.size // (2 * assembled.axes), 2 * assembled.axes))
