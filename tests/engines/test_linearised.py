@@ -124,16 +124,6 @@ def test_a_mean_force_is_reached(short_shape):
     assert run.contact_force_statistics()[0].mean == pytest.approx(0.00097 * 250**2 + 70, abs=0.1)
 
 
-def test_an_elastic_pantograph(short_shape):
-    elastic = cf.ElasticPantograph(force=150.0, stiffness=500.0)
-    ours, theirs = (
-        cf.simulate(short_shape, [elastic], speed=40.0, method=method)
-        for method in ("linearised", "nonlinear")
-    )
-    force = theirs.data["contact_force"].values
-    assert ours.data["contact_force"].values == pytest.approx(force, abs=0.05 * np.ptp(force))
-
-
 def test_a_line_without_any_damping():
     """There is no damping matrix then."""
     shape = cf.find_form(cf.load_catenary(CASES / "undamped.toml"))
