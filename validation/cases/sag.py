@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from catenary_fe import theory
 from catenary_fe.engines.exudyn.wire_build import wire_at_rest
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from catenary_fe.layout import GRAVITY
@@ -29,7 +30,7 @@ def catenary(x: Floats | float, tension: float = TENSION) -> Floats:
 
 
 def parabola(x: Floats, tension: float = TENSION) -> Floats:
-    return -weight() * x * (LENGTH - x) / (2 * tension)
+    return theory.static_uniform_load(wire(tension=tension).beam, x, length=LENGTH, load=-weight())
 
 
 def compute(quick: bool) -> tuple[Floats, Floats]:
@@ -38,8 +39,8 @@ def compute(quick: bool) -> tuple[Floats, Floats]:
     return x, wire_at_rest(WireProblem(wire=wire(), x=x, weight=True, initial_deflection=parabola))
 
 
-def compare_curve(curve: tuple[Floats, Floats], slip: float) -> list[Check]:
-    sag, tension = -float(curve[1].min()), slip * TENSION
+def compare_curve(curve: tuple[Floats, Floats], perturbation: float) -> list[Check]:
+    sag, tension = -float(curve[1].min()), perturbation * TENSION
     references = (
         ("sag, catenary", -float(catenary(LENGTH / 2, tension)), CATENARY),
         ("sag, parabola", weight() * LENGTH**2 / (8 * tension), PARABOLA),
