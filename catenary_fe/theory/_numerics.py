@@ -56,7 +56,10 @@ def counted(name: str, value: int, *, at_least: int = 1) -> int:
 
 def numbers(name: str, values: ArrayLike) -> FloatArray:
     """The values as an array of finite floats."""
-    array = np.asarray(values, dtype=np.float64)
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise refuse(name, values, "must be numbers", "pass the wire first, then arrays") from None
     if not np.all(np.isfinite(array)):
         raise refuse(name, "nan or inf", "every entry must be finite", "remove or mask those entries")
     return array

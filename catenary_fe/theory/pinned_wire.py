@@ -247,7 +247,7 @@ def moving_force_series(
     """
     x, t = within("x", x, 0.0, positive("length", length, "m")), times(t)
     v, a = non_negative("speed", speed, "m/s"), float(within("start", start, 0.0, length))
-    load = _Travelling(as_harmonic(force), v, a, _leaving_time(length - a, v))
+    load = TravellingForce(as_harmonic(force), v, a, _leaving_time(length - a, v))
     c, inertia = known(wire).wave_speed, wire.mass_per_length * length
     gap = 1.0 - (v / c) ** 2
     is_string = wire.bending_stiffness == wire.foundation_stiffness == 0.0
@@ -272,7 +272,7 @@ def _influence_line(x: FloatArray, place: FloatArray, length: float) -> FloatArr
 
 
 def _kinks(
-    load: _Travelling, t: FloatArray, c: float, length: float, shape: Callable[[FloatArray], FloatArray]
+    load: TravellingForce, t: FloatArray, c: float, length: float, shape: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
     """Kinks under the force and those shed when it came and left: a sum of ``shape`` at their places."""
     ratio, acts = load.speed / c, t <= load.leave
@@ -288,7 +288,7 @@ def _kinks(
 
 
 @dataclass(frozen=True)
-class _Travelling:
+class TravellingForce:
     """A constant or harmonic force that moves from ``start`` at t = 0 and acts until it leaves the wire."""
 
     force: HarmonicForce

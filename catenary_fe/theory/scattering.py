@@ -167,7 +167,7 @@ def amplification_coefficient(contact: String, messenger: String, *, speed: floa
     speed : [m/s] v of the pantograph, not negative, below the contact wire's wave speed
     """
     alpha, remedy = doppler_factor(contact, speed=speed), "choose a speed below the wave speed"
-    return reflection_coefficient(contact, messenger) / positive("doppler factor", alpha, "", remedy=remedy)
+    return reflection_coefficient(contact, messenger) / positive("doppler_factor", alpha, "", remedy=remedy)
 
 
 def pulse_at_obstacle(

@@ -129,10 +129,11 @@ def wavenumber(wire: String, angular_frequency: ArrayLike) -> FloatArray:
     """
     omega = numbers("angular_frequency", angular_frequency)
     driven = known(wire).mass_per_length * omega**2 - wire.foundation_stiffness
-    if np.any(driven < 0.0):
+    if np.any(driven < -1e-12 * wire.foundation_stiffness):
         least = sqrt(wire.foundation_stiffness / wire.mass_per_length)
         rule = f"must be at least {least:g} rad/s, below which no wave runs on this foundation"
         raise refuse("angular_frequency", f"{np.abs(omega).min():g} rad/s", rule, "leave those out")
+    driven = np.maximum(driven, 0.0)  # at the limit itself, rounding may leave it below
     root = np.sqrt(wire.tension**2 + 4.0 * wire.bending_stiffness * driven)
     return np.asarray(np.sqrt(2.0 * driven / (wire.tension + root)))
 
