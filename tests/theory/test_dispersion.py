@@ -70,5 +70,5 @@ def test_no_wave_runs_below_the_cut_on_of_a_foundation():
     cut_on = np.sqrt(5e3 / RHO)
     assert apart(wavenumber(bed, angular_frequency(bed, K)), K) < 1e-12
     assert wavenumber(bed, cut_on) == pytest.approx(0.0, abs=1e-6)
-    with pytest.raises(ValueError, match=r"angular_frequency = .* at least 61\.3 rad/s"):
+    with pytest.raises(ValueError, match=r"angular_frequency = .* at least 61\.3139 rad/s"):
         wavenumber(bed, 0.99 * cut_on)
