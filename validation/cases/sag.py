@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from catenary_fe import theory
 from catenary_fe.engines.exudyn.wire_build import wire_at_rest
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from catenary_fe.layout import GRAVITY
@@ -30,7 +29,7 @@ def catenary(x: Floats | float, tension: float = TENSION) -> Floats:
 
 
 def parabola(x: Floats, tension: float = TENSION) -> Floats:
-    return theory.static_uniform_load(wire(tension=tension).beam, x, length=LENGTH, load=-weight())
+    return -weight() * x * (LENGTH - x) / (2 * tension)
 
 
 def compute(quick: bool) -> tuple[Floats, Floats]:
