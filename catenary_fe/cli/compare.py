@@ -47,7 +47,7 @@ def compare(
 
     With -o, also pictures of forces, differences and uplifts, and a page comparison.html.
     """
-    from catenary_fe.results.comparison import failed_checks, input_differences, key_figures
+    from catenary_fe.results.comparison import failed_checks, figures_table, input_differences, key_figures
 
     runs, labels = [run_in(folder) for folder in folders], _labels(folders)
     kind, warnings = common_filter(folders, labels, filter_kind)
@@ -72,14 +72,11 @@ def compare(
     if as_json:
         print_json(result)
     elif not quiet:
-        from catenary_fe.views.report.comparison import figures_table
-
         if inputs:
             print_table("what went in differently", ("input", *labels), [(d.name, *d.values) for d in inputs])
         else:
             click.echo("the inputs are the same")
-        table = figures_table(columns)
-        print_table(f"what came out, {kind} filter", table.columns, table.rows)
+        print_table(f"what came out, {kind} filter", *figures_table(columns))
     if not as_json:
         print_warnings(warnings)
 

@@ -66,14 +66,9 @@ def kept_evaluation(folder: str | Path) -> tuple[FilterKind, PowerSystem | None]
 
 def print_criteria(system: PowerSystem, rows: Sequence[Criterion]) -> None:
     """A table of all criteria."""
-    from catenary_fe.results import criteria_in_words, labels
+    from catenary_fe.results.criteria import criteria_in_words, criteria_table
 
-    table = [
-        (label, row.value_text, row.limit_text, row.verdict, row.source)
-        for label, row in zip(labels(rows), rows, strict=True)
-    ]
-    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
-    print_table(f"{system}: {criteria_in_words(rows)}", columns, table)
+    print_table(f"{system}: {criteria_in_words(rows)}", *criteria_table(rows))
 
 
 def exit_code(rows: Sequence[Criterion]) -> int:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from catenary_fe.layout import InputError
-from catenary_fe.results.csv_files import write_csv
+from catenary_fe.results.export import write_csv
 from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
 
 if TYPE_CHECKING:

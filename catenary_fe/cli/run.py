@@ -43,6 +43,7 @@ from catenary_fe.layout import (
     layout_warnings,
     load_pantograph,
 )
+from catenary_fe.results.quantities import FORCE, NON_UNIFORMITY, UPLIFT, figure_rows
 
 if TYPE_CHECKING:
     from catenary_fe.results import Criterion, Run
@@ -298,31 +299,12 @@ def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[A
     return loaded
 
 
-_ROWS = (
-    ("mean force (N)", "mean_N", ".1f"),
-    ("standard deviation (N)", "std_N", ".1f"),
-    ("  0 to 5 Hz (N)", "std_0_5_Hz_N", ".1f"),
-    ("  5 to 20 Hz (N)", "std_5_20_Hz_N", ".1f"),
-    ("statistical maximum (N)", "statistical_max_N", ".1f"),
-    ("statistical minimum (N)", "statistical_min_N", ".1f"),
-    ("actual maximum (N)", "max_N", ".1f"),
-    ("actual minimum (N)", "min_N", ".1f"),
-    ("contact loss, however short (% of the time)", "contact_loss_percent", ".2f"),
-    ("  in losses over 5 ms (% of the time)", "contact_loss_over_5_ms_percent", ".2f"),
-    ("  number of losses over 5 ms", "losses_over_5_ms", "d"),
-    ("  longest loss (ms)", "longest_loss_ms", ".1f"),
-    ("range of the contact point (mm)", "contact_point_range_mm", ".1f"),
-)
-
-
 def _print_summary(title: str, summary: dict[str, Any]) -> None:
     pantographs = summary["pantographs"]
-    rows = [(text, *(format(p[key], form) for p in pantographs)) for text, key, form in _ROWS]
-    uplift = f"{summary['max_support_uplift_mm']:.1f}"
     blank = [""] * (len(pantographs) - 1)
-    rows.append(("largest uplift at a support (mm)", uplift, *blank))
-    if (uniformity := summary["elasticity_non_uniformity_percent"]) is not None:
-        rows.append(("non-uniformity of the elasticity (%)", f"{uniformity:.2f}", *blank))
+    rows = figure_rows(FORCE.values(), pantographs)
+    of_line = [q for q in (UPLIFT, NON_UNIFORMITY) if summary[q.key] is not None]
+    rows += [(*row, *blank) for row in figure_rows(of_line, [summary])]
     print_table(_heading(title, summary), ("", *(p["name"] for p in pantographs)), rows)
     if blank:
         click.echo(f"governing pantograph: {summary['governing_pantograph']}")
@@ -338,10 +320,9 @@ def _megabytes(folder: str) -> float:
 
 def print_checks(run: Run) -> None:
     """The quality checks as a table."""
-    from catenary_fe.results import checks_in_words
+    from catenary_fe.results.check import checks_in_words, checks_table
 
-    rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
-    print_table(checks_in_words(run.checks), ("check", "value", "bound", "verdict"), rows)
+    print_table(checks_in_words(run.checks), *checks_table(run.checks))
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from catenary_fe.cli.terminal import print_table
-from catenary_fe.results.csv_files import cell, common_name, decimals_of
+from catenary_fe.results.export import cell, common_name
+from catenary_fe.results.quantities import decimals_of
 
 if TYPE_CHECKING:
     from catenary_fe.cli.folder import Folder

@@ -28,6 +28,7 @@ from catenary_fe.cli.terminal import (
 )
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
 from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
+from catenary_fe.results.quantities import DROPPER_FORCE, FORCE, SLACK_DROPPERS, UPLIFT
 
 if TYPE_CHECKING:
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
@@ -48,11 +49,9 @@ A sweep that was stopped goes on when it is started again with the same folder."
 
 _MOST = 100_000
 _FIGURES = (
-    ("mean_N", "mean N"), ("std_N", "σ N"), ("statistical_min_N", "stat. min N"),
-    ("statistical_max_N", "stat. max N"), ("min_N", "min N"), ("max_N", "max N"),
-    ("contact_loss_over_5_ms_percent", "loss > 5 ms %"), ("max_support_uplift_mm", "uplift mm"),
+    *(FORCE[name] for name in ("mean", "std", "statistical_min", "statistical_max", "min", "max")),
+    FORCE["long_contact_loss"], UPLIFT,
 )  # fmt: skip
-_DIGITS = {"contact_loss_over_5_ms_percent": 2}
 
 
 @click.command(
@@ -278,10 +277,8 @@ def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[
         return [values | {"error": verdict.error}]
     summary = record["summary"]
     several = len(summary["pantographs"]) > 1
-    common = {
-        key: summary[key]
-        for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
-    }
+    keys = (UPLIFT.key, SLACK_DROPPERS.key, DROPPER_FORCE.key, "simulated_s")
+    common = {key: summary[key] for key in keys}
     return [
         values
         | {"number": i}
@@ -337,18 +334,14 @@ def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
     table = [
         [
             *(row.get(name, "") for name in varied),
-            *(_shown(row, key) for key, _ in _FIGURES),
+            *("failed" if row["error"] else q.number(row[q.key]) for q in _FIGURES),
             *(_count(row.get(key, "")) for key in said),
         ]
         for row in rows
     ]
-    titles = [*varied, *(title for _, title in _FIGURES), *(key.replace("_", " ") for key in said)]
+    titles = [*varied, *(f"{q.short} {q.unit}" for q in _FIGURES), *(key.replace("_", " ") for key in said)]
     print_table("sweep", titles, table)
 
 
 def _count(names: str) -> int | str:
     return len(names.split("; ")) if names else ""
-
-
-def _shown(row: dict[str, Any], key: str) -> str:
-    return "failed" if row["error"] else f"{row[key]:.{_DIGITS.get(key, 1)}f}"

@@ -16,7 +16,7 @@ FAILED = "check failed: "  # begins the warning of a check that fails
 @changed_by_copy
 @dataclass(frozen=True)
 class Check:
-    """One guard: what was found, what it must be, and what to do if it is not.
+    """One check: what was found, what it must be, and what to do if it is not.
 
     name : short, for tables and JSON
     rule : whether the bound is the largest ("at most") or the smallest ("at least") good value
@@ -64,6 +64,12 @@ class Check:
 
     def __str__(self) -> str:
         return f"{self.name} = {self.value_text}, must be {self.bound_text}: {self.text}"
+
+
+def checks_table(checks: Sequence[Check]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names of the columns, and a row of texts for each check."""
+    columns = ("check", "value", "bound", "verdict")
+    return columns, [(c.name, c.value_text, c.bound_text, c.verdict) for c in checks]
 
 
 def checks_in_words(checks: Sequence[Check]) -> str:

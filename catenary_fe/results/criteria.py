@@ -22,6 +22,7 @@ from catenary_fe.layout.current_collection import (
     mean_force_limit,
 )
 from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.results.quantities import DIGITS, FORCE, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
@@ -100,7 +101,7 @@ class Criterion:
     @property
     def _digits(self) -> int:
         """Decimals that a table shows: more than usual where value and limit would look the same."""
-        usual = 2 if self.unit == "%" else 1
+        usual = DIGITS.get(self.unit, 1)
         value, limit = self.value, self.limit
         if limit is None or limit == value:
             return usual
@@ -177,10 +178,10 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
     if figures.non_uniformity is not None:
         rows.append(
             Criterion(
-                name="elasticity non-uniformity",
-                value=100 * figures.non_uniformity,
+                name=NON_UNIFORMITY.name,
+                value=NON_UNIFORMITY.shown(figures.non_uniformity),
                 limit=None,
-                unit="%",
+                unit=NON_UNIFORMITY.unit,
                 source="no limit known here",
             )
         )
@@ -216,55 +217,49 @@ def labels(rows: Sequence[Criterion]) -> list[str]:
     return [f"{row.name}, {row.pantograph}" if several and row.pantograph else row.name for row in rows]
 
 
+def criteria_table(rows: Sequence[Criterion]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names of the columns, and a row of texts for each criterion, with what its limit rests on."""
+    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
+    return columns, [
+        (label, row.value_text, row.limit_text, row.verdict, row.source)
+        for label, row in zip(labels(rows), rows, strict=True)
+    ]
+
+
+def _row(s: ForceStatistics, figure: str, **limit: Any) -> Criterion:
+    """Of a figure of the contact force, by its attribute."""
+    quantity = FORCE[figure]
+    value = quantity.shown(getattr(s, figure))
+    return Criterion(name=quantity.name, pantograph=s.pantograph, value=value, unit=quantity.unit, **limit)
+
+
 def _against(limit: Limit) -> dict[str, Any]:
-    return {"limit": limit.value, "unit": "N", "source": limit.source, "recalled": limit.recalled}
+    return {"limit": limit.value, "source": limit.source, "recalled": limit.recalled}
 
 
 def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance: float) -> list[Criterion]:
-    figure: dict[str, Any] = {
-        "name": "mean force",
-        "pantograph": s.pantograph,
-        "value": s.mean,
-        "tolerance": tolerance,
-    }
+    low, high = mean_force_limit(system, "minimum", speed), mean_force_limit(system, "maximum", speed)
     return [
-        Criterion(**figure, relation="at least", **_against(mean_force_limit(system, "minimum", speed))),
-        Criterion(**figure, relation="at most", **_against(mean_force_limit(system, "maximum", speed))),
+        _row(s, "mean", tolerance=tolerance, relation="at least", **_against(low)),
+        _row(s, "mean", tolerance=tolerance, relation="at most", **_against(high)),
     ]
 
 
 def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Criterion]:
     largest, loss = _against(force_limit(system, speed)), contact_loss_limit(speed)
+    share = f"{DEVIATION_SHARE:g} of the mean force (secondary source)"
+    above_0 = "mean force − 3 σ above 0 (secondary source)"
+    long_losses = {
+        "limit": None if loss.value is None else 100 * loss.value,
+        "source": f"share of the time in {loss.source}",
+        "recalled": loss.recalled,
+    }
     return [
-        Criterion(
-            name="standard deviation",
-            pantograph=s.pantograph,
-            value=s.std,
-            limit=DEVIATION_SHARE * s.mean,
-            unit="N",
-            source=f"{DEVIATION_SHARE:g} of the mean force (secondary source)",
-        ),
-        Criterion(
-            name="statistical minimum",
-            pantograph=s.pantograph,
-            value=s.statistical_min,
-            relation="above",
-            limit=0.0,
-            unit="N",
-            source="mean force − 3 σ above 0 (secondary source)",
-            start=s.mean,
-        ),
-        Criterion(name="statistical maximum", pantograph=s.pantograph, value=s.statistical_max, **largest),
-        Criterion(name="actual maximum", pantograph=s.pantograph, value=s.max, **largest),
-        Criterion(
-            name="contact loss over 5 ms",
-            pantograph=s.pantograph,
-            value=100 * s.long_contact_loss,
-            limit=None if loss.value is None else 100 * loss.value,
-            unit="%",
-            source=f"share of the time in {loss.source}",
-            recalled=loss.recalled,
-        ),
+        _row(s, "std", limit=DEVIATION_SHARE * s.mean, source=share),
+        _row(s, "statistical_min", relation="above", limit=0.0, source=above_0, start=s.mean),
+        _row(s, "statistical_max", **largest),
+        _row(s, "max", **largest),
+        _row(s, "long_contact_loss", **long_losses),
     ]
 
 

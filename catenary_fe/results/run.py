@@ -21,6 +21,13 @@ from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.files import atomic_write
 from catenary_fe.results.partial import Partial
 from catenary_fe.results.quality import run_checks
+from catenary_fe.results.quantities import (
+    CHECKS_FAILED,
+    DROPPER_FORCE,
+    NON_UNIFORMITY,
+    SLACK_DROPPERS,
+    UPLIFT,
+)
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
 from catenary_fe.results.wires import WireHistory, wire_histories
@@ -276,16 +283,16 @@ class Run:
                 for s, name in zip(figures, names, strict=True)
             ],
             "governing_pantograph": governing(self.figures(filter)),
-            "max_support_uplift_mm": 1e3 * self.largest_support_uplift() if self.reached else None,
-            "support_uplift_mm": {str(n): 1e3 * z for n, z in uplift.items()},
-            "slack_droppers": self.slackened_droppers.size,
-            "largest_dropper_force_N": self.largest_dropper_force,
-            "elasticity_non_uniformity_percent": 100 * curve.non_uniformity if curve else None,
+            UPLIFT.key: UPLIFT.shown(self.largest_support_uplift()) if self.reached else None,
+            "support_uplift_mm": {str(n): UPLIFT.shown(z) for n, z in uplift.items()},
+            SLACK_DROPPERS.key: self.slackened_droppers.size,
+            DROPPER_FORCE.key: self.largest_dropper_force,
+            NON_UNIFORMITY.key: NON_UNIFORMITY.shown(curve.non_uniformity) if curve else None,
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
             "checks": [check.as_dict() for check in self.checks],
-            "checks_failed": list(self.failed_checks),
+            CHECKS_FAILED.key: list(self.failed_checks),
             "warnings": list(self.warnings),
         }
 

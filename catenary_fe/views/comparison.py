@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from catenary_fe.results import Run
+from catenary_fe.results.quantities import in_short
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.views.style import (
     Picture,
@@ -41,7 +42,7 @@ def plot_force_comparison(
     colours = distinct(len(runs))
     for i, ((x, values), label, colour) in enumerate(zip(curves, labels, colours, strict=True)):
         statistics = runs[i].contact_force_statistics(filter=filter)[0]
-        name = f"{label}: mean {statistics.mean:.1f} N, σ {statistics.std:.1f} N"
+        name = f"{label}: {in_short(statistics, ('mean', 'std'))}"
         force.plot(x, values, color=colour, linewidth=1.1, label=name)
         if i:
             there = np.interp(first_x, x, values, left=np.nan, right=np.nan)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout.arguments import checked
 from catenary_fe.results import ForceStatistics, Run
+from catenary_fe.results.quantities import in_short
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.views.style import (
     DROPPER,
@@ -66,7 +67,7 @@ def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | No
 def _in_words(s: ForceStatistics | None) -> str:
     if s is None:
         return "evaluated spans not passed"
-    return f"mean {s.mean:.1f} N, σ {s.std:.1f} N, min {s.min:.0f} N, max {s.max:.0f} N"
+    return in_short(s, ("mean", "std", "min", "max"))
 
 
 def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: str, named: bool) -> None:

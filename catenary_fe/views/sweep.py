@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from catenary_fe.layout import target_mean_force
 from catenary_fe.layout.current_collection import DEVIATION_SHARE
 from catenary_fe.layout.variation import unit_of
+from catenary_fe.results.quantities import UPLIFT
 from catenary_fe.views.style import distinct, finish, headroom, new_axes, note_failed, styled
 
 Rows = Sequence[Mapping[str, Any]]
@@ -68,10 +69,10 @@ def plot_sweep_uplift(rows: Rows, x: str, by: Sequence[str] = (), *, ax: Axes | 
     """Largest uplift at a support of the evaluated spans against ``x``."""
     ax = new_axes(ax, (10.0, 4.2))
     for colour, name, curve in _curves(rows, x, by):
-        values = _column(curve, "max_support_uplift_mm")
+        values = _column(curve, UPLIFT.key)
         ax.plot(_column(curve, x), values, "o-", color=colour, markersize=4, label=f"{name}uplift")
     ax.set_ylim(bottom=0.0)
-    return _finished(ax, rows, x, "largest uplift at a support (mm)", "Uplift")
+    return _finished(ax, rows, x, UPLIFT.label, "Uplift")
 
 
 def _curves(rows: Rows, x: str, by: Sequence[str]) -> list[tuple[str, str, list[Mapping[str, Any]]]]:

@@ -7,6 +7,8 @@ from typing import Any
 
 from catenary_fe.layout import InputError, PowerSystem
 from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_words, criteria_rows
+from catenary_fe.results.check import checks_table
+from catenary_fe.results.criteria import criteria_table
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape
 from catenary_fe.views import layout, plan, run_waves, static
@@ -49,12 +51,12 @@ def report_page(
         "governing": tables.why_it_governs(run, governing, rows),
         "versions": json.loads(run.data.attrs["versions"]),
         "keys": tables.key_figures(run, governing),
-        "criteria": tables.criteria_table(rows, system),
+        "criteria": tables.Table(f"Limits of {system}", *criteria_table(rows)),
         "verdict": f"{system}: {criteria_in_words(rows)}." if rows else f"Not judged. {run.partial}.",
         "bad": any(row.passed is False for row in rows),
         "checks_verdict": _sentence(checks_in_words(run.checks)),
         "warnings": run.warnings,
-        "checks": tables.checks_table(run),
+        "checks": tables.Table("", *checks_table(run.checks)),
         "motion": motion is not None,
         "statistics": tables.statistics_table(run, filter),
         "by_span": tables.span_table(run, filter),

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted
-from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing, labels
-from catenary_fe.results.csv_files import cell, common_name, decimals_of
+from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
+from catenary_fe.results.export import cell, common_name
+from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.statics import Shape
 
@@ -57,73 +58,38 @@ def key_figures(run: Run, s: ForceStatistics | None) -> list[dict[str, str]]:
     """The governing pantograph's figures to see at one glance, and the largest uplift."""
     if s is None:
         return [{"name": "evaluated spans", "value": "not passed"}]
+    uplift = UPLIFT.shown(run.largest_support_uplift())
     return [
-        {"name": "mean force", "value": f"{s.mean:.1f} N"},
-        {"name": "standard deviation", "value": f"{s.std:.1f} N"},
-        {"name": "actual minimum, maximum", "value": f"{s.min:.0f}, {s.max:.0f} N"},
-        {"name": "contact loss over 5 ms", "value": f"{100 * s.long_contact_loss:.2f} %"},
-        {"name": "uplift at a support", "value": f"{1e3 * run.largest_support_uplift():.1f} mm"},
+        *({"name": FORCE[own].name, "value": FORCE[own].text(s)} for own in ("mean", "std")),
+        {"name": "actual minimum, maximum", "value": f"{FORCE['min'].text(s)}, {FORCE['max'].text(s)}"},
+        {"name": FORCE["long_contact_loss"].name, "value": FORCE["long_contact_loss"].text(s)},
+        {"name": UPLIFT.name, "value": f"{UPLIFT.number(uplift)} {UPLIFT.unit}"},
     ]
 
 
 def statistics_table(run: Run, filter: FilterKind) -> Table:
     """Statistics of all pantographs over the evaluated spans."""
-    rows: tuple[tuple[str, Callable[[ForceStatistics], str]], ...] = (
-        ("mean force Fₘ (N)", lambda s: f"{s.mean:.1f}"),
-        ("standard deviation σ (N)", lambda s: f"{s.std:.1f}"),
-        ("of which 0 to 5 Hz (N)", lambda s: f"{s.std_0_5:.1f}"),
-        ("of which 5 to 20 Hz (N)", lambda s: f"{s.std_5_20:.1f}"),
-        ("statistical maximum Fₘ + 3σ (N)", lambda s: f"{s.statistical_max:.1f}"),
-        ("statistical minimum Fₘ − 3σ (N)", lambda s: f"{s.statistical_min:.1f}"),
-        ("actual maximum (N)", lambda s: f"{s.max:.1f}"),
-        ("actual minimum (N)", lambda s: f"{s.min:.1f}"),
-        ("contact loss, however short (% of the time)", lambda s: f"{100 * s.contact_loss:.2f}"),
-        ("contact loss over 5 ms (% of the time)", lambda s: f"{100 * s.long_contact_loss:.2f}"),
-        ("number of losses over 5 ms", lambda s: str(s.long_losses)),
-        ("longest loss (ms)", lambda s: f"{1e3 * s.longest_loss:.1f}"),
-        ("range of the contact point (mm)", lambda s: f"{1e3 * s.contact_point_range:.1f}"),
-    )
-    found = run.figures(filter)
     spans = ", ".join(map(str, run.evaluated_spans))
     caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
     names = [str(name) for name in run.data["pantograph"].values]
-    cells = [(name, *(text(s) if s else "–" for s in found)) for name, text in rows]
-    return Table(caption, ("", *names), cells)
+    columns = [s.as_dict() if s else {} for s in run.figures(filter)]
+    return Table(caption, ("", *names), figure_rows(FORCE.values(), columns))
 
 
 def span_table(run: Run, filter: FilterKind) -> Table:
     """Contact force span by span: how far single spans are from the evaluated ones together."""
     by_span = run.statistics_by_span(filter)
     names = [str(name) for name in run.data["pantograph"].values]
-    quantities: tuple[tuple[str, Callable[[ForceStatistics], float]], ...] = (
-        ("mean (N)", lambda s: s.mean),
-        ("σ (N)", lambda s: s.std),
-        ("maximum (N)", lambda s: s.max),
-        ("minimum (N)", lambda s: s.min),
-    )
+    shown = {own: FORCE[own] for own in ("mean", "std", "max", "min")}
     several = len(names) > 1
-    columns = [f"{name}: {text}" if several else text for name in names for text, _ in quantities]
+    columns = [
+        f"{name}: {q.short_label}" if several else q.short_label for name in names for q in shown.values()
+    ]
     cells = [
-        (str(span), *(f"{value(s):.1f}" for s in figures for _, value in quantities))
+        (str(span), *(q.number(getattr(s, own)) for s in figures for own, q in shown.items()))
         for span, figures in by_span.items()
     ]
     return Table("Contact force span by span", ("span", *columns), cells)
-
-
-def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
-    """A run's figures against the limits of its system, each with what the limit rests on."""
-    cells = [
-        (label, row.value_text, row.limit_text, row.verdict, row.source)
-        for label, row in zip(labels(rows), rows, strict=True)
-    ]
-    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
-    return Table(f"Limits of {system}", columns, cells)
-
-
-def checks_table(run: Run) -> Table:
-    """The quality checks with this run's numbers."""
-    rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
-    return Table("", ("check", "this run", "bound", "verdict"), rows)
 
 
 def uplift_table(run: Run) -> Table:
