@@ -62,7 +62,7 @@ def compare(
     with output_folder(output) as folder, working("pictures", bool(output) and not quiet):
         if folder:
             from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
-            from catenary_fe.views.report.comparison import comparison_page
+            from catenary_fe.views.report import comparison_page
 
             folder.json("comparison.json", result)
             folder.table("comparison.csv", result["runs"])

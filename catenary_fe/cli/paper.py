@@ -21,7 +21,7 @@ from catenary_fe.layout import InputError, counted
 from catenary_fe.results.files import write_text
 
 if TYPE_CHECKING:
-    from catenary_fe.views.index_page import PageEntry
+    from catenary_fe.views.report.page import PageEntry
 
 TITLE = "Selected problems of wave phenomena in catenaries: all figures, computed"
 EPILOG = """\b
@@ -49,7 +49,7 @@ def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet
     FIGURE is a number (5), or part of a script's name (dispersion). Exit code 1 when a figure fails; the
     others are drawn all the same.
     """
-    from catenary_fe.views.index_page import index_page
+    from catenary_fe.views.report.page import index_page
 
     scripts = chosen_scripts(_scripts_folder(), figures)
     folder = writable_folder(output)
@@ -116,7 +116,7 @@ def draw_all(
 
 def draw(script: Path, folder: Path) -> tuple[PageEntry, float]:
     """Run one script; returns what the page shows of it, and the seconds it took."""
-    from catenary_fe.views.index_page import PageEntry
+    from catenary_fe.views.report.page import PageEntry
 
     picture, facts = folder / f"{script.stem}.png", folder / f"{script.stem}.json"
     for old in (picture, facts):

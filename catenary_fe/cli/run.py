@@ -262,7 +262,7 @@ def write_run(
 ) -> None:
     """Results, pictures and summary of a run; its criteria where it was judged."""
     from catenary_fe import views
-    from catenary_fe.views.plan import head_width
+    from catenary_fe.views.layout import head_width
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)

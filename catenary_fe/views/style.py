@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 from matplotlib import colormaps, style
@@ -14,6 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
+
+from catenary_fe.results import Run
 
 _Arguments = ParamSpec("_Arguments")
 _Drawn = TypeVar("_Drawn")
@@ -27,6 +29,7 @@ SUPPORT = "#444444"
 SLACK = "#d62728"  # a dropper that has gone slack
 EVALUATED = "#f3efe2"  # behind the evaluated spans
 OTHERS = "#c9c9c9"  # what is not evaluated
+ALONG = "position along the line (m)"
 PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
 _MANY = (*PANTOGRAPHS, "#b8860b", "#2a8f8f", "#a33b5e", "#5a5a5a")
 
@@ -34,6 +37,11 @@ _MANY = (*PANTOGRAPHS, "#b8860b", "#2a8f8f", "#a33b5e", "#5a5a5a")
 def wire_colour(name: str) -> str:
     """Colour of a wire by its name, such as "left contact wire"."""
     return next((colour for kind, colour in WIRES.items() if kind in name), MESSENGER)
+
+
+def pantograph_colour(number: int) -> str:
+    """Colour of a pantograph, numbered from 0."""
+    return PANTOGRAPHS[number % len(PANTOGRAPHS)]
 
 
 def sequence(count: int) -> list[str]:
@@ -116,6 +124,21 @@ def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     return ax
+
+
+def legend(ax: Axes, columns: int = 4, where: Literal["upper left", "upper right"] = "upper left") -> None:
+    """Names of the curves on a light ground."""
+    ax.legend(loc=where, fontsize=8, ncols=columns, framealpha=0.9)
+
+
+def finish_run(ax: Axes, run: Run, x: str, y: str, what: str) -> Axes:
+    """As :func:`finish`, of a run: the title says which one and what is shown, and which checks it fails."""
+    return note_failed(finish(ax, x, y, run_title(run, what)), run.failed_checks)
+
+
+def run_title(run: Run, what: str) -> str:
+    """The run's title and speed, and what is shown of it."""
+    return f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h{what}"
 
 
 def note_failed(ax: Axes, failed: Iterable[str], whose: str = "") -> Axes:
