@@ -128,6 +128,11 @@ def _named(path: str) -> Path:
     return Path(path)
 
 
+def folder_of(path: str | Path) -> Path:
+    """A run's folder, or that of a file in it."""
+    return Path(path) if Path(path).is_dir() else Path(path).parent
+
+
 def run_in(path: str | Path) -> Run:
     """The run in a folder that ``catenary-fe run -o`` wrote, or in a file of it. Raises InputError."""
     from catenary_fe.results import load_run

@@ -6,33 +6,28 @@ import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from catenary_fe.cli.completion import pantograph_names
-from catenary_fe.cli.criteria import evaluated, exit_code, print_criteria, with_elasticity
+from catenary_fe.cli.design import write_schedules
 from catenary_fe.cli.folder import PARTIAL, Folder, output_folder, read_record
 from catenary_fe.cli.inputs import InputFiles
-from catenary_fe.cli.many_values import ManyValues
-from catenary_fe.cli.schedules import write_schedules
-from catenary_fe.cli.terminal import (
-    json_option,
+from catenary_fe.cli.options import (
+    ManyValues,
+    answered,
+    criteria_option,
+    element_option,
     layout_argument,
-    output_option,
+    method_option,
+    pantograph_names,
     planar_option,
-    print_json,
-    print_table,
-    print_warnings,
-    progress_bar,
-    quiet_option,
     read_layout,
-    say,
-    say_lengths,
     spans_option,
-    warned,
-    working,
+    time_step_option,
 )
+from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
+from catenary_fe.cli.verdicts import evaluated, exit_code, print_criteria, with_elasticity
 from catenary_fe.layout import (
     AnyPantograph,
     InputError,
@@ -40,7 +35,6 @@ from catenary_fe.layout import (
     RunInterrupted,
     SolverError,
     counted,
-    layout_warnings,
     load_pantograph,
 )
 from catenary_fe.results.quantities import FORCE, NON_UNIFORMITY, UPLIFT, figure_rows
@@ -76,20 +70,16 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
-@click.option(
-    "--method",
-    type=click.Choice(["nonlinear", "linearised", "exudyn"]),
-    default="nonlinear",
-    show_default=True,
-    help="Linearised: about the static state, many times faster.",
+@method_option(
+    "nonlinear", "linearised", "exudyn", help="Linearised: about the static state, many times faster."
 )
 @click.option(
     "--checkpoint",
     type=click.Path(dir_okay=False),
     help="File that keeps the state of a nonlinear run: started again after a kill, the run goes on from it.",
 )
-@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
-@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
+@time_step_option
+@element_option
 @click.option(
     "--filter",
     "filter_kind",
@@ -116,15 +106,8 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     is_flag=True,
     help="Compute the elasticity of the evaluated spans, too, and keep it with the run.",
 )
-@click.option(
-    "--criteria",
-    "system",
-    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
-    help="Judge the run by the limits of this system; exit code 1 on a miss.",
-)
-@output_option
-@json_option
-@quiet_option
+@criteria_option("Judge the run by the limits of this system; exit code 1 on a miss.")
+@answered
 def run(
     layout: str,
     names: tuple[str, ...],
@@ -141,17 +124,14 @@ def run(
     planar: bool,
     with_curve: bool,
     system: PowerSystem | None,
-    output: str | None,
-    as_json: bool,
-    quiet: bool,
+    answer: Answer,
 ) -> int:
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
-    from catenary_fe.statics import find_form
     from catenary_fe.studies import simulate
 
-    catenary = read_layout(layout, planar)
+    catenary, output = read_layout(layout, planar), answer.folder
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
@@ -162,12 +142,10 @@ def run(
         store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
-    with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        with working("form finding", not quiet):
-            shape = find_form(catenary, mesh)
+    with static_shape(catenary, answer, mesh) as (shape, folder):
         options = _options(click.get_current_context())
         kept = partial_kept(output, shape, files, options, filter_kind)
-        with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress, kept:
+        with progress_bar(f"run at {speed_kmh:g} km/h", not answer.quiet) as progress, kept:
             result = simulate(
                 shape,
                 pantographs,
@@ -181,25 +159,23 @@ def run(
                 checkpoint=checkpoint,
             )
         if with_curve:
-            result = with_elasticity(result, shape, quiet)
+            result = with_elasticity(result, shape, answer.quiet)
         summary, rows = evaluated(result, filter_kind, system)
         if folder:
             files.keep(folder, result, options)
-            with working("pictures", not quiet):
+            with working("pictures", not answer.quiet):
                 write_run(folder, shape, result, summary, rows)
             forget_partial(folder)
-    if as_json:
-        print_json(summary)
-    elif not quiet:
+
+    def tables() -> None:
         _print_summary(catenary.name, summary)
         print_checks(result)
         if system:
             print_criteria(system, rows)
         if output:
             click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
-    say_lengths(shape, quiet)
-    if not as_json:
-        print_warnings(summary["warnings"])
+
+    answer.show(summary, tables, shape)
     return exit_code(rows)
 
 

@@ -7,25 +7,27 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from catenary_fe.cli.folder import output_folder
-from catenary_fe.cli.many_values import ManyValues
-from catenary_fe.cli.surroundings import readable
-from catenary_fe.cli.sweep_verdicts import Verdict, exit_code, in_words, remarks, verdict_of, warn_once
-from catenary_fe.cli.terminal import (
+from catenary_fe.cli.options import (
+    ManyValues,
+    criteria_option,
+    element_option,
     json_option,
     layout_argument,
-    print_json,
-    print_table,
-    progress_bar,
+    method_option,
+    output_option,
     quiet_option,
-    say,
     spans_option,
+    time_step_option,
 )
+from catenary_fe.cli.surroundings import readable
+from catenary_fe.cli.terminal import print_json, print_table, progress_bar, say
+from catenary_fe.cli.verdicts import Verdict, in_words, remarks, sweep_exit_code, verdict_of, warn_once
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
 from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
 from catenary_fe.results.quantities import DROPPER_FORCE, FORCE, SLACK_DROPPERS, UPLIFT
@@ -67,27 +69,15 @@ _FIGURES = (
     help="Positions in m at the start: each case runs one pantograph at each.",
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
-@click.option(
-    "--method",
-    type=click.Choice(["linearised", "nonlinear", "exudyn"]),
-    default="linearised",
-    show_default=True,
-)
-@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
-@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
+@method_option("linearised", "nonlinear", "exudyn")
+@time_step_option
+@element_option
 @spans_option
-@click.option(
-    "--criteria",
-    "system",
-    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
-    help="Judge the cases by the limits of this system; exit code 1 where one misses any.",
-)
+@criteria_option("Judge the cases by the limits of this system; exit code 1 where one misses any.")
 @click.option("--jobs", type=click.IntRange(1), help="Number of processes; unset: one a core.")
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
 @click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
-@click.option(
-    "-o", "--output", required=True, type=click.Path(), metavar="DIR", help="Folder for table and pictures."
-)
+@output_option("Folder for table and pictures.", required=True)
 @json_option
 @quiet_option
 def sweep(
@@ -163,7 +153,7 @@ def sweep(
         )
     if failed and (lost or len(failed) == len(records)):
         raise click.exceptions.Exit((lost or failed)[0]["exit_code"])
-    return exit_code(verdicts, system)
+    return sweep_exit_code(verdicts, system)
 
 
 def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
