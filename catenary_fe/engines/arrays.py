@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,89 +36,6 @@ class PackedRows(NamedTuple):
     inner: Floats
 
 
-class ComplianceColumns(NamedTuple):
-    """ComplianceColumns of the inverse of the step's matrix where they are not negligible.
-
-    first : shape (columns,), number of the first row kept
-    value : shape (columns, width)
-    """
-
-    first: Integers
-    value: Floats
-
-
-class Operator(NamedTuple):
-    """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
-
-    lower, upper : L and Lᵀ without their diagonals of ones; PackedRows for one slot, CsrRows for eight
-    """
-
-    lower: Any
-    upper: Any
-    inverse: Floats
-    stiffness: Any
-    rest: Any
-    beta: float
-
-
-class SteadyArmBars(NamedTuple):
-    """Steady arms that swing, see :class:`~catenary_fe.fe.reduction.SteadyArmBars`.
-
-    at : shape (links, 2)
-    compliance : columns of the inverse for these coordinates, one link's two after the other
-    """
-
-    at: Integers
-    span: Floats
-    length: Floats
-    k: Floats
-    compliance: ComplianceColumns
-
-
-class StretchCoupling(NamedTuple):
-    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`."""
-
-    at: Integers
-    length: Floats
-    gap: Integers
-
-
-class Line(NamedTuple):
-    """Contact wires, one after the other, and droppers.
-
-    first : shape (contact wires + 1,), where the wires' nodes begin
-    lengths : [m], shape (nodes,), of the elements that begin there
-    static, lateral : shape (nodes, 2), height and slope at rest, likewise to the left
-    at : shape (nodes, 2), coordinates of height and slope
-    contact_compliance : columns of the inverse for these coordinates, numbered by ``column``
-    rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
-    dropper_compliance : likewise for the droppers
-    links, stretch : steady arms, inclined elements
-    load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.reduction.LinearModel`
-    supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
-    """
-
-    first: Integers
-    x: Floats
-    lengths: Floats
-    static: Floats
-    lateral: Floats
-    at: Integers
-    column: Integers
-    contact_compliance: ComplianceColumns
-    rows: CsrRows
-    k: Floats
-    d: Floats
-    tension: Floats
-    dropper_compliance: ComplianceColumns
-    links: SteadyArmBars
-    stretch: StretchCoupling
-    load: Floats
-    supports: Integers
-    heights: Integers
-    tensions: Integers
-
-
 class Wires(NamedTuple):
     """State of the wires, each of shape (size, slots): q*, v*, c, x of :class:`Scheme`, and q* + β v*."""
 
@@ -129,27 +46,24 @@ class Wires(NamedTuple):
     w: Floats
 
 
-class Heads(NamedTuple):
-    """Pantographs of each slot, masses and springs; heights count from the nominal one.
+class PantographParameters(NamedTuple):
+    """Pantographs of each slot and their contacts; heights count from the nominal contact wire height.
 
-    q, v, c, x : shape (slots, pantographs, coordinates), as in :class:`Scheme`
     K, D, inverse : shape (slots, pantographs, coordinates, coordinates), inverse of M + g D + b K
     load : shape (slots, pantographs, coordinates)
     owner, wire : shape (slots, contacts), pantograph (-1: none) and contact wire of each contact
     start : [m], shape (slots, contacts)
-    heave, roll : shape (slots, contacts, coordinates), height of the head at the contact: as it heaves, and
+    heave, roll : shape (slots, contacts, coordinates), height of the strip at the contact: as it heaves, and
         for each metre to the left
     k, d : [N/m], [N s/m], shape (slots, contacts)
-    preload : [N], shape (slots, contacts), force on a wire at its nominal height, without masses
+    preload : [N], shape (slots, contacts), force on a wire at the height of its strip
+    points : shape (slots, contacts), number of points of the contact's law; 0: it is straight
+    law : [m] and [N], shape (slots, contacts, points, 2), of wires above the strip and forces
     speed : [m/s], shape (slots,)
-    step, last : shape (slots,), number of the step reached and of the run's last one
-    nominal : [m], height that masses count from
+    last : shape (slots,), number of the run's last step
+    nominal : [m], height that coordinates count from
     """
 
-    q: Floats
-    v: Floats
-    c: Floats
-    x: Floats
     K: Floats
     D: Floats
     inverse: Floats
@@ -162,10 +76,25 @@ class Heads(NamedTuple):
     k: Floats
     d: Floats
     preload: Floats
+    points: Integers
+    law: Floats
     speed: Floats
-    step: Integers
     last: Integers
     nominal: float
+
+
+class PantographState(NamedTuple):
+    """State of the pantographs of each slot, and how far each slot's run is.
+
+    q, v, c, x : shape (slots, pantographs, coordinates), as in :class:`Scheme`
+    step : shape (slots,), number of the step reached
+    """
+
+    q: Floats
+    v: Floats
+    c: Floats
+    x: Floats
+    step: Integers
 
 
 class Records(NamedTuple):
@@ -205,6 +134,7 @@ class Work(NamedTuple):
         from which row on, in how many
     shape, rise : shape (slots, contacts, 5), weights of height and inclination; last, at rest
     at : shape (slots, contacts, 4), coordinates that they weigh
+    on : shape (slots, contacts), 1 where a strip is between the ends of its wire
     head, head_compliance : shape (slots, contacts, coordinates), height of the head there, how it yields
     """
 
@@ -220,5 +150,6 @@ class Work(NamedTuple):
     shape: Floats
     rise: Floats
     at: Integers
+    on: Integers
     head: Floats
     head_compliance: Floats

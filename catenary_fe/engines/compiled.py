@@ -1,4 +1,4 @@
-"""Compilation of hot loops with numba where it is installed; without it they stay plain Python."""
+"""Compilation of hot loops with numba."""
 
 from __future__ import annotations
 
@@ -6,18 +6,13 @@ import hashlib
 import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from types import ModuleType
 from typing import Any, TypeVar, cast
 
 from catenary_fe.results.files import own_temporary_folder
 
-numba: Any
-try:
-    import numba
-except ImportError:
-    numba = None
-
-COMPILED = numba is not None
+numba: Any = import_module("numba")  # its types are not complete
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
@@ -48,8 +43,6 @@ def stamp(*modules: ModuleType) -> str:
 
 
 def _compiled(function: _Function, keep: bool) -> _Function:
-    if numba is None:
-        return function
     # to unpack Python arguments takes longer to compile than most functions that only others call
     options = {} if keep else {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     made = numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function)
@@ -101,9 +94,6 @@ class _Forgiving:
 @contextmanager
 def vectorising() -> Iterator[None]:
     """Let what is compiled inside make vectors of neighbouring scalars: twice as fast here."""
-    if numba is None:
-        yield
-        return
     config = numba.config
     before = config.SLP_VECTORIZE
     config.SLP_VECTORIZE = 1

@@ -57,11 +57,14 @@ def place_of_fault(mbs: exu.MainSystem, start: Floats) -> str:
     return f"the solve ran away at {x:.1f} m along the line, where it moved {name} {far}"
 
 
-def place_of_heads(catenary: Catenary, positions: Sequence[float] | Floats) -> str:
-    """Where the pantographs are: position, span, and the support next to it."""
-    supports, texts = catenary.support_positions, []
+def place_of_heads(supports: Floats, positions: Sequence[float] | Floats) -> str:
+    """Where the pantographs are: position, span, and the support next to it.
+
+    supports, positions : [m] along the track
+    """
+    texts = []
     for i, x in enumerate(positions, start=1):
-        span = min(max(int(np.searchsorted(supports, x)), 1), len(catenary.spans))
+        span = min(max(int(np.searchsorted(supports, x)), 1), supports.size - 1)
         nearest = int(np.abs(supports - x).argmin())
         gap = x - supports[nearest]
         side = "behind" if gap >= 0 else "before"
@@ -72,11 +75,11 @@ def place_of_heads(catenary: Catenary, positions: Sequence[float] | Floats) -> s
 
 
 def smaller_steps(
-    catenary: Catenary, positions: Sequence[float] | Floats, time: float, parts: int, lasted: float
+    supports: Floats, positions: Sequence[float] | Floats, time: float, parts: int, lasted: float
 ) -> str:
     """A warning that steps were divided: when [s], into how many parts, for how long [ms], and where."""
     return (
-        f"no convergence with the time step at {time:.4f} s, {place_of_heads(catenary, positions)}: the"
+        f"no convergence with the time step at {time:.4f} s, {place_of_heads(supports, positions)}: the"
         f" {lasted:g} ms from there are computed in steps of 1/{parts} of it; if the force is rough there,"
         " take a smaller time step for all of the run"
     )

@@ -6,7 +6,7 @@ known, and (M + g D + b K) x = f - D v* - K q*. Functions come for one slot and 
 
 from __future__ import annotations
 
-from catenary_fe.engines.arrays import SLOTS, CsrRows, Floats, Line, PackedRows
+from catenary_fe.engines.arrays import CsrRows, Floats, PackedRows
 from catenary_fe.engines.compiled import compiled
 
 
@@ -59,39 +59,6 @@ def upper_one(U: PackedRows, inverse: Floats, x: Floats, first: int, last: int) 
         x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
 
 
-@compiled
-def couple_stretch_one(line: Line, q: Floats, tension: Floats, x: Floats) -> None:
-    """Terms of second order: inclination lengthens gaps, and their tension works on it; added to x."""
-    at, length, gap = line.stretch.at, line.stretch.length, line.stretch.gap
-    for r in range(length.size):
-        i, j, k, m = at[r, 0], at[r, 1], at[r, 2], at[r, 3]
-        y = q[i] if i >= 0 else 0.0
-        z = q[k] if k >= 0 else 0.0
-        s = q[j] if j >= 0 else 0.0
-        e = q[m] if m >= 0 else 0.0
-        L, t = length[r], tension[gap[r]]
-        across, first, last, longer = stretch_forces(L, y, s, z, e)
-        if i >= 0:
-            x[i] -= t * across
-        if j >= 0:
-            x[j] -= t * first
-        if k >= 0:
-            x[k] += t * across
-        if m >= 0:
-            x[m] -= t * last
-        x[line.tensions[gap[r]]] -= longer
-
-
-@compiled
-def stretch_forces(L: float, y: float, s: float, z: float, e: float) -> tuple[float, float, float, float]:
-    """Of an element with places y and z and slopes s and e at its ends: forces per tension, lengthening."""
-    chord = y - z
-    across = (36 * chord / L + 3 * (s + e)) / 30
-    first = (3 * chord + 4 * L * s - L * e) / 30
-    last = (3 * chord - L * s + 4 * L * e) / 30
-    return across, first, last, 0.5 * (across * chord + first * s + last * e)
-
-
 # eight slots are written out: so the compiler makes vectors of them
 
 
@@ -129,28 +96,3 @@ def upper_eight(U: CsrRows, inverse: Floats, x: Floats) -> None:
             a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
             e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
         r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
-
-
-@compiled
-def couple_stretch_eight(line: Line, q: Floats, tension: Floats, x: Floats) -> None:
-    """Terms of second order: inclination lengthens gaps, and their tension works on it; added to x."""
-    at, length, gap = line.stretch.at, line.stretch.length, line.stretch.gap
-    for r in range(length.size):
-        i, j, k, m = at[r, 0], at[r, 1], at[r, 2], at[r, 3]
-        n, L = line.tensions[gap[r]], length[r]
-        for c in range(SLOTS):
-            y = q[i, c] if i >= 0 else 0.0
-            z = q[k, c] if k >= 0 else 0.0
-            s = q[j, c] if j >= 0 else 0.0
-            e = q[m, c] if m >= 0 else 0.0
-            t = tension[c, gap[r]]
-            across, first, last, longer = stretch_forces(L, y, s, z, e)
-            if i >= 0:
-                x[i, c] -= t * across
-            if j >= 0:
-                x[j, c] -= t * first
-            if k >= 0:
-                x[k, c] += t * across
-            if m >= 0:
-                x[m, c] -= t * last
-            x[n, c] -= longer

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import Heads, Records
+from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.linearised.start import InitialState
-from catenary_fe.statics import Shape
-
-if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
+from catenary_fe.engines.history import History
+from catenary_fe.fe.contact import Contact, PlacedPantograph, contacts_of
+from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 
@@ -28,21 +26,58 @@ class Sizes:
     coordinates: int
     steps: int
     shapes: int = 0
+    points: int = 0
+
+    @classmethod
+    def of(cls, runs: Sequence[Sequence[PlacedPantograph]], wires: int, steps: int, every: int) -> Sizes:
+        """The most that runs with these pantographs on so many contact wires need.
+
+        every : steps between shapes of the wires, 0: none
+        """
+        bodies = [placed.body for run in runs for placed in run]
+        return cls(
+            pantographs=max((len(run) for run in runs), default=1),
+            contacts=max((len(contacts_of(run, wires)) for run in runs), default=1),
+            coordinates=max([1, *(body.size for body in bodies)]),
+            steps=steps,
+            shapes=steps // every + 1 if every else 0,
+            points=max((len(body.contact.points) for body in bodies), default=0),
+        )
 
 
-def make_heads(slots: int, sizes: Sizes, nominal: float) -> Heads:
+@dataclass(frozen=True)
+class InitialState:
+    """Where a run starts, at rest in static contact.
+
+    q : [m], shape (coordinates of the engine,), displacements
+    dropper_force : [N], shape (droppers,)
+    speed : [m/s]
+    wires : number of contact wires
+    """
+
+    q: Floats
+    pantographs: list[PlacedPantograph]
+    dropper_force: Floats
+    speed: float
+    wires: int
+
+    @property
+    def contacts(self) -> list[Contact]:
+        """Each strip on each contact wire."""
+        return contacts_of(self.pantographs, self.wires)
+
+
+def make_pantographs(
+    slots: int, sizes: Sizes, nominal: float
+) -> tuple[PantographParameters, PantographState]:
     """Room for pantographs."""
-    each, body = (slots, sizes.contacts), (slots, sizes.pantographs, sizes.coordinates)
-    square, rows = (*body, sizes.coordinates), (*each, sizes.coordinates)
-    return Heads(
-        q=np.zeros(body),
-        v=np.zeros(body),
-        c=np.zeros(body),
-        x=np.zeros(body),
+    each, own = (slots, sizes.contacts), (slots, sizes.pantographs, sizes.coordinates)
+    square, rows = (*own, sizes.coordinates), (*each, sizes.coordinates)
+    parameters = PantographParameters(
         K=np.zeros(square),
         D=np.zeros(square),
         inverse=np.zeros(square),
-        load=np.zeros(body),
+        load=np.zeros(own),
         owner=np.full(each, -1),
         wire=np.zeros(each, dtype=np.int64),
         start=np.zeros(each),
@@ -51,11 +86,20 @@ def make_heads(slots: int, sizes: Sizes, nominal: float) -> Heads:
         k=np.zeros(each),
         d=np.zeros(each),
         preload=np.zeros(each),
+        points=np.zeros(each, dtype=np.int64),
+        law=np.zeros((*each, sizes.points, 2)),
         speed=np.zeros(slots),
-        step=np.zeros(slots, dtype=np.int64),
         last=np.zeros(slots, dtype=np.int64),
         nominal=nominal,
     )
+    state = PantographState(
+        q=np.zeros(own),
+        v=np.zeros(own),
+        c=np.zeros(own),
+        x=np.zeros(own),
+        step=np.zeros(slots, dtype=np.int64),
+    )
+    return parameters, state
 
 
 def make_records(slots: int, sizes: Sizes, counts: tuple[int, int, int, int], every: int) -> Records:
@@ -82,72 +126,80 @@ def make_records(slots: int, sizes: Sizes, counts: tuple[int, int, int, int], ev
     )
 
 
-def load_heads(
-    heads: Heads, records: Records, slot: int, scheme: Scheme, start: InitialState, steps: int
+def load_pantographs(
+    heads: PantographParameters,
+    state: PantographState,
+    records: Records,
+    slot: int,
+    scheme: Scheme,
+    start: InitialState,
+    steps: int,
 ) -> None:
     """Put the pantographs of a run at its start into a slot."""
-    for array in (
-        heads.q,
-        heads.v,
-        heads.c,
-        heads.x,
-        heads.K,
-        heads.D,
-        heads.inverse,
-        heads.load,
-        heads.heave,
-        heads.roll,
-    ):
+    for array in (*state[:4], heads.K, heads.D, heads.inverse, heads.load, heads.heave, heads.roll):
         array[slot] = 0.0
     heads.owner[slot] = -1
-    j = 0
-    for p, body in enumerate(start.bodies):
-        m = body.q.size
-        heads.q[slot, p, :m] = body.q
-        heads.K[slot, p, :m, :m], heads.D[slot, p, :m, :m] = body.K, body.D
-        heads.inverse[slot, p, :m, :m] = np.linalg.inv(body.M + scheme.g * body.D + scheme.b * body.K)
-        heads.load[slot, p, :m] = body.uplift * body.load
-        records.masses[slot, p, :m, 0] = body.q
-        for touch in body.touches:
-            heads.owner[slot, j], heads.wire[slot, j] = p, touch.wire
-            heads.start[slot, j] = body.position + touch.ahead
-            heads.heave[slot, j, :m], heads.roll[slot, j, :m] = touch.heave, touch.roll
-            heads.k[slot, j], heads.d[slot, j] = body.contact_stiffness, body.contact_damping
-            heads.preload[slot, j] = body.preload
-            records.force[slot, j, 0], records.height[slot, j, 0] = touch.force, touch.wire_height
-            j += 1
-    heads.speed[slot], heads.step[slot], heads.last[slot] = start.speed, 0, steps
+    for p, placed in enumerate(start.pantographs):
+        body, m = placed.body, placed.body.size
+        state.q[slot, p, :m] = placed.heights
+        heads.K[slot, p, :m, :m], heads.D[slot, p, :m, :m] = body.stiffness, body.damping
+        matrix = body.mass + scheme.g * body.damping + scheme.b * body.stiffness
+        heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
+        heads.load[slot, p, :m] = placed.uplift * body.load
+        records.masses[slot, p, :m, 0] = placed.heights
+    for j, contact in enumerate(start.contacts):
+        body = start.pantographs[contact.pantograph].body
+        heads.owner[slot, j], heads.wire[slot, j] = contact.pantograph, contact.wire
+        heads.start[slot, j] = contact.position
+        heads.heave[slot, j, : body.size] = body.heave(contact.strip)
+        heads.roll[slot, j, : body.size] = body.roll(contact.strip)
+        law = body.contact
+        heads.k[slot, j], heads.d[slot, j], heads.preload[slot, j] = law.stiffness, law.damping, law.preload
+        heads.points[slot, j] = len(law.points)
+        if law.points:
+            heads.law[slot, j, : len(law.points)] = law.points
+    count = len(start.contacts)
+    records.force[slot, :count, 0] = np.concatenate([p.forces for p in start.pantographs])
+    records.height[slot, :count, 0] = np.concatenate([p.wire_heights for p in start.pantographs])
+    heads.speed[slot], state.step[slot], heads.last[slot] = start.speed, 0, steps
     records.droppers[slot, :, 0] = start.dropper_force
     for found in (records.change, records.changed, records.shortening, records.shortened):
         found[slot] = 0
 
 
-def read_journey(
-    records: Records, heads: Heads, slot: int, start: InitialState, steps: int, step: float, shape: Shape
+def read_history(
+    records: Records,
+    heads: PantographParameters,
+    slot: int,
+    start: InitialState,
+    steps: int,
+    step: float,
+    system: System,
 ) -> History:
     """What a slot's run recorded."""
-    from catenary_fe.engines.exudyn.run import History
-
-    mesh = shape.mesh
-    n, every, bodies = steps + 1, records.every, start.bodies
+    n, every, pantographs = steps + 1, records.every, start.pantographs
     time: Floats = np.arange(n, dtype=np.float64) * step
     owner = heads.owner[slot]
-    at = np.array([body.position for body in bodies])
-    supports = [w.z[m.supports] for w, m in zip(shape.contact_wires, mesh.wires, strict=False)]
+    at = np.array([placed.position for placed in pantographs])
+    supports = [path.profile[path.supports, 0] for path in system.contact_paths]
     uplift = records.supports[slot, :, :n].reshape(len(supports), -1, n)
     stored = records.wire[slot, : steps // every + 1] if every else np.zeros((0, 0))
-    nodes = zip(shape.wires, mesh.first_nodes[:-1], mesh.first_nodes[1:], strict=True)
-    nothing = np.array([])
+    rest, nothing = system.reference[system.heights], np.array([])
+    parts = [slice(wire.first, wire.first + wire.x.size) for wire in system.wires]
+    of_each = [owner == p for p in range(len(pantographs))]
     return History(
         time=time,
         position=at[:, None] + heads.speed[slot] * time,
-        contact_force=np.array([records.force[slot, owner == p, :n].sum(axis=0) for p in range(len(bodies))]),
-        wire_height=np.array([records.height[slot, owner == p, :n].mean(axis=0) for p in range(len(bodies))]),
-        mass_heights=[records.masses[slot, p, : c.masses, :n].copy() for p, c in enumerate(bodies)],
+        contact_force=np.array([records.force[slot, mine, :n].sum(axis=0) for mine in of_each]),
+        wire_height=np.array([records.height[slot, mine, :n].mean(axis=0) for mine in of_each]),
+        mass_heights=[
+            records.masses[slot, p, : len(placed.body.bodies), :n].copy()
+            for p, placed in enumerate(pantographs)
+        ],
         dropper_force=records.droppers[slot, :, :n].copy(),
         support_height=np.array(supports)[:, :, None] + uplift,
-        wire_x=[wire.x for wire in mesh.wires],
-        wire_z=[hanging.z + stored[:, a:b] for hanging, a, b in nodes] if every else [],
+        wire_x=[wire.x for wire in system.wires],
+        wire_z=[rest[part] + stored[:, part] for part in parts] if every else [],
         wire_times=time[::every] if every else None,
         energy=nothing,
         energy_times=nothing,

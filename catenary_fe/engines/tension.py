@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.installation import WireLine, wire_kinds
-from catenary_fe.fe.mesh import Mesh
-from catenary_fe.layout import Catenary
+from catenary_fe.fe.system import System
 
 if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
+    from catenary_fe.engines.history import History
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -29,26 +26,20 @@ class TensionGauge:
     pantographs excite goes.
     """
 
-    def __init__(self, catenary: Catenary, mesh: Mesh, lines: Sequence[WireLine]) -> None:
-        self._axes = lines[0].axes
-        self._reference = np.concatenate([line.coordinates() for line in lines])
-        lengths = np.concatenate([line.lengths for line in lines])
-        kinds = wire_kinds(catenary, mesh)
-        self._first = np.concatenate(
-            [a + np.arange(line.lengths.size) for a, line in zip(mesh.first_nodes, lines, strict=False)]
-        )
-        sections, begin, owner = [], 0, []
-        for number, (stations, line) in enumerate(zip(mesh.wires, lines, strict=True)):
-            whole = number >= mesh.first_stitch
-            starts = np.array([0]) if whole else np.asarray(stations.supports)[:-1]
-            sections.append(begin + starts)
+    def __init__(self, system: System) -> None:
+        self._axes = system.axes
+        self._reference = system.reference.reshape(-1, 2 * system.axes)
+        self._first = system.first // (2 * system.axes)
+        sections, owner = [], []
+        for number, wire in enumerate(system.wires):
+            starts = wire.supports[:-1] if wire.supports.size else np.array([0])
+            sections.append(np.searchsorted(self._first, wire.first + starts))
             owner += [number] * starts.size
-            begin += line.lengths.size
         self._sections, self._owner = np.concatenate(sections), np.array(owner)
+        lengths, cables = system.cables.length, system.cables
         self._length = np.add.reduceat(lengths, self._sections)
-        stiffness = np.array([kind.axial_stiffness for kind in kinds])[self._owner]
-        self._stiffness = stiffness
-        self._nominal = np.array([kind.tension for kind in kinds])[self._owner]
+        self._stiffness = cables.axial_stiffness[self._sections]
+        self._nominal = -cables.rest_strain[self._sections] * self._stiffness
         xi, one = _POINTS, np.ones((lengths.size, 1))
         self._rise = 6 * (xi - xi**2) / lengths[:, None]
         self._left, self._right = one * (1 - 4 * xi + 3 * xi**2), one * (3 * xi**2 - 2 * xi)

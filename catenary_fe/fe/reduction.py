@@ -13,43 +13,24 @@ the wire moves by as much: inclinations lengthen a gap, and its change of tensio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import tangent_blocks
-from catenary_fe.fe.installation import Installation, element_pulls
+from catenary_fe.fe.contact import ContactPath
+from catenary_fe.fe.installation import element_pulls
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED
-from catenary_fe.fe.system import System, assemble
+from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 ALONG = 0
-
-
-@dataclass(frozen=True)
-class ContactLine:
-    """A contact wire as a pantograph meets it.
-
-    x : [m], shape (nodes,), stations
-    lengths : [m], shape (nodes - 1,), of the elements
-    static : [m and 1], shape (nodes, 2), height and vertical slope at rest
-    lateral : [m and 1], shape (nodes, 2), likewise to the left
-    index : shape (nodes, 2), numbers of the coordinates of height and slope, or FIXED
-    supports : shape (spans + 1,), numbers of the height at the supports, or FIXED
-    """
-
-    x: Floats
-    lengths: Floats
-    static: Floats
-    lateral: Floats
-    index: Integers
-    supports: Integers
 
 
 @dataclass(frozen=True)
@@ -111,7 +92,7 @@ class LinearModel:
     links : steady arms that swing
     stretch : elements whose inclination lengthens a gap
     gaps : where these tensions are
-    in_space : whether it has coordinates to the side
+    spatial : whether it has coordinates to the side
     """
 
     mass: Any
@@ -121,13 +102,13 @@ class LinearModel:
     dropper_stiffness: Floats
     dropper_damping: Floats
     dropper_tension: Floats
-    contacts: tuple[ContactLine, ...]
+    contacts: tuple[ContactPath, ...]
     heights: Integers
     tensions: Integers
     gaps: Gaps
     links: SteadyArmBars
     stretch: StretchCoupling
-    in_space: bool
+    spatial: bool
 
     @property
     def size(self) -> int:
@@ -141,10 +122,9 @@ class LinearModel:
         return load
 
 
-def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> LinearModel:
+def linear_model(system: System, catenary: Catenary, mesh: Mesh) -> LinearModel:
     """The catenary's linearised model at static equilibrium."""
-    system = assemble(catenary, mesh, installation)
-    wires = _reduced_wires(system, catenary, mesh, installation)
+    wires = _reduced_wires(system, catenary, mesh)
     whole, gaps = system.place.size, sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
     droppers = system.droppers
@@ -154,9 +134,8 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
     D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping), gaps)
     K = K + _padded(system.spring_stiffness(), gaps)
     M = M + _padded(system.mass - system.wire_mass, gaps)
-    T, place = _kept(system, mesh, installation, wires, gaps)
+    T, place = _kept(system, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
-    up = system.axes - 1
     return LinearModel(
         mass=M,
         stiffness=K,
@@ -165,13 +144,13 @@ def linear_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> 
         dropper_stiffness=droppers.stiffness,
         dropper_damping=droppers.damping,
         dropper_tension=np.where(pull > 0, pull, np.minimum(push, 0.0)),
-        contacts=contact_lines(system, mesh, installation, place),
-        heights=place[2 * system.axes * np.arange(mesh.first_nodes[-1]) + up],
+        contacts=tuple(replace(path, dof=place[path.index]) for path in system.contact_paths),
+        heights=place[system.heights],
         tensions=place[whole:],
         gaps=_gaps(wires),
         links=_swinging_links(system, place),
-        stretch=_stretch_coupling(system, installation, wires, place),
-        in_space=system.in_space,
+        stretch=_stretch_coupling(system, wires, place),
+        spatial=system.spatial,
     )
 
 
@@ -183,15 +162,13 @@ def _gaps(wires: list[_ReducedWire]) -> Gaps:
     )
 
 
-def _stretch_coupling(
-    system: System, installation: Installation, wires: list[_ReducedWire], place: Integers
-) -> StretchCoupling:
+def _stretch_coupling(system: System, wires: list[_ReducedWire], place: Integers) -> StretchCoupling:
     across = system.axes - 1
     index, length, gap, first = [], [], [], 0
-    for wire, line in zip(wires, installation.lines, strict=True):
+    for wire in wires:
         for axis in range(across):
             index.append(place[wire.across[:, axis::across]])
-            length.append(line.lengths)
+            length.append(wire.lengths)
             gap.append(first + wire.gap_of)
         first += wire.gap_stiffness.size
     return StretchCoupling(np.concatenate(index), np.concatenate(length), np.concatenate(gap))
@@ -207,25 +184,12 @@ def _swinging_links(system: System, place: Integers) -> SteadyArmBars:
     )
 
 
-def contact_lines(
-    system: System, mesh: Mesh, installation: Installation, place: Integers
-) -> tuple[ContactLine, ...]:
-    """The contact wires where they were installed, with their coordinates at ``place``."""
-    found, axes, up = [], system.axes, system.axes - 1
-    for number, line in enumerate(installation.lines[: mesh.contact_wires]):
-        nodes = 2 * axes * (mesh.first_nodes[number] + np.arange(line.x.size))
-        index, q = place[nodes[:, None] + [up, up + axes]], line.coordinates()
-        lateral = q[:, [1, 1 + axes]] if axes == 3 else np.zeros((len(q), 2))
-        static, supports = q[:, [up, up + axes]], index[mesh.wires[number].supports, 0]
-        found.append(ContactLine(line.x, line.lengths, static, lateral, index, supports))
-    return tuple(found)
-
-
 @dataclass(frozen=True)
 class _ReducedWire:
     """Elements of a wire without the coordinates along the track.
 
     across : shape (elements, m), numbers of their other coordinates
+    lengths : [m], shape (elements,)
     stiffness, mass : shape (elements, m, m)
     lengthening : shape (elements, m), of an element with its other coordinates, its ends held along the track
     gap_of : shape (elements,)
@@ -236,6 +200,7 @@ class _ReducedWire:
     """
 
     across: Integers
+    lengths: Floats
     stiffness: Floats
     mass: Floats
     lengthening: Floats
@@ -247,17 +212,16 @@ class _ReducedWire:
     tension: Floats
 
 
-def _reduced_wires(
-    system: System, catenary: Catenary, mesh: Mesh, installation: Installation
-) -> list[_ReducedWire]:
+def _reduced_wires(system: System, catenary: Catenary, mesh: Mesh) -> list[_ReducedWire]:
     rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
     stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
     found, begin = [], 0
     for number, pull in enumerate(element_pulls(catenary, mesh)):
         part = slice(begin, begin + pull.size)
         begin += pull.size
-        index, x = system.elements()[part], installation.lines[number].x
-        found.append(_reduced(stiffness[part], mass[part], index, _clamps(mesh, number), x, pull))
+        clamps, x = _clamps(mesh, number), system.wires[number].x
+        reduced = _reduced(stiffness[part], mass[part], system.elements()[part], clamps, x, pull)
+        found.append(replace(reduced, lengths=system.cables.length[part]))
     return found
 
 
@@ -284,6 +248,7 @@ def _reduced(
     first = index[0, 0] + width * clamps
     return _ReducedWire(
         across=index[:, across],
+        lengths=np.zeros(len(M)),
         stiffness=stiffness,
         mass=M[:, across[:, None], across],
         lengthening=lengthening,
@@ -351,9 +316,7 @@ class _Triplets:
         return values, (rows, columns)
 
 
-def _kept(
-    system: System, mesh: Mesh, installation: Installation, wires: list[_ReducedWire], gaps: int
-) -> tuple[Any, Integers]:
+def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers]:
     """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or FIXED.
 
     A gap's tension comes just before the gap's end.
@@ -363,8 +326,8 @@ def _kept(
     T = block_diag([system.transformation, identity(gaps)]).tocsc()
     whole, width = T.shape[0] - gaps, 2 * system.axes
     station = np.full(T.shape[0], np.nan)
-    for wire, line, first in zip(wires, installation.lines, mesh.first_nodes, strict=False):
-        nodes = width * (first + np.arange(line.x.size))
+    for wire, line in zip(wires, system.wires, strict=True):
+        nodes = width * (line.first + np.arange(line.x.size))
         across = np.setdiff1d(np.arange(width), [ALONG, ALONG + system.axes])
         station[(nodes[:, None] + across).ravel()] = np.repeat(line.x, across.size)
         station[wire.gap_ends[:, 1]] = wire.gap_x[1:]

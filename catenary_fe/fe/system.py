@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.assembly import scattered
 from catenary_fe.fe.cable import Cables, inner_forces, mass_blocks, strain_energy, tangent_blocks
+from catenary_fe.fe.contact import ContactPath
 from catenary_fe.fe.installation import (
     Installation,
     curve_pulls,
@@ -35,6 +36,22 @@ Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
+class WireNodes:
+    """A wire of the system: what it is called, the number of its first node, and its stations.
+
+    x : [m], shape (nodes,)
+    contact : whether pantographs run along it
+    supports : numbers of its own nodes at the supports
+    """
+
+    name: str
+    first: int
+    x: Floats
+    contact: bool
+    supports: Integers
+
+
+@dataclass(frozen=True)
 class System:
     """The assembled line.
 
@@ -44,12 +61,15 @@ class System:
     first : shape (elements,), number of each cable element's first coordinate among all; those of its two
         nodes follow one another
     cables : the elements
+    mass_per_length : [kg/m], shape (elements,)
     element_mass : [kg], shape (elements, 4 * axes, 4 * axes)
     wire_mass, mass : sparse, [kg], over all coordinates: of the wires, and with what they carry
     droppers, arms : springs
     ground_stiffness, ground_damping : [N/m], [N s/m], shape (all,), of springs to the ground
     force : [N], shape (all,), constant: weight, tensions, curves, preloads, balance
     alpha, beta : Rayleigh damping of the wires
+    wires : contact wires, messenger wire, stitch wires
+    contact_wire_height : [m], nominal, from which pantographs count
     """
 
     axes: int
@@ -57,6 +77,7 @@ class System:
     place: Integers
     first: Integers
     cables: Cables
+    mass_per_length: Floats
     element_mass: Floats
     wire_mass: Any
     mass: Any
@@ -67,6 +88,8 @@ class System:
     force: Floats
     alpha: float
     beta: float
+    wires: tuple[WireNodes, ...]
+    contact_wire_height: float
 
     @property
     def size(self) -> int:
@@ -74,9 +97,52 @@ class System:
         return int(self.place.max(initial=FIXED)) + 1
 
     @property
-    def in_space(self) -> bool:
-        """Whether it has coordinates to the side."""
+    def spatial(self) -> bool:
+        """Whether it has coordinates across the track."""
         return self.axes == 3
+
+    @cached_property
+    def contact_paths(self) -> tuple[ContactPath, ...]:
+        """The contact wires as pantographs meet them."""
+        axes, up = self.axes, self.axes - 1
+        paths = []
+        for wire in self.wires:
+            if not wire.contact:
+                continue
+            nodes = 2 * axes * (wire.first + np.arange(wire.x.size))
+            index: Integers = nodes[:, None] + np.array([up, up + axes])
+            lateral = nodes[:, None] + np.array([1, 1 + axes])
+            paths.append(
+                ContactPath(
+                    x=wire.x,
+                    lengths=self.cables.length[np.searchsorted(self.first, nodes[:-1])],
+                    profile=self.reference[index],
+                    lateral=self.reference[lateral] if self.spatial else np.zeros((wire.x.size, 2)),
+                    index=index,
+                    dof=self.place[index],
+                    supports=wire.supports,
+                )
+            )
+        return tuple(paths)
+
+    @property
+    def support_positions(self) -> Floats:
+        """[m], shape (spans + 1,), along the track."""
+        wire = self.wires[0]
+        return wire.x[wire.supports]
+
+    @cached_property
+    def heights(self) -> Integers:
+        """Shape (nodes of all wires,): numbers of the heights among all coordinates."""
+        return np.arange(self.axes - 1, self.place.size, 2 * self.axes)
+
+    def name(self, coordinate: int) -> str:
+        """A coordinate among all in words: wire, place, and what it is."""
+        node, which = divmod(coordinate, 2 * self.axes)
+        wire = next(w for w in reversed(self.wires) if w.first <= node)
+        axis = ("along the track", *(("to the left",) if self.spatial else ()), "up")[which % self.axes]
+        kind = "slope" if which >= self.axes else "position"
+        return f"{wire.name} at {wire.x[node - wire.first]:.1f} m, {kind} {axis}"
 
     def spread(self, free: Floats) -> Floats:
         """From values of the free coordinates, shape (..., free), to all, 0 where they cannot move."""
@@ -194,7 +260,13 @@ class System:
 
     def _with_elements(self, kept: NDArray[np.bool_]) -> System:
         cables = Cables(*(values[kept] for values in vars(self.cables).values()))
-        return replace(self, first=self.first[kept], cables=cables, element_mass=self.element_mass[kept])
+        return replace(
+            self,
+            first=self.first[kept],
+            cables=cables,
+            mass_per_length=self.mass_per_length[kept],
+            element_mass=self.element_mass[kept],
+        )
 
     def free(self, matrix: Any) -> Any:
         """A matrix over all coordinates as one over the free ones."""
@@ -243,6 +315,7 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
         place=held.place(lines),
         first=first,
         cables=Cables(lengths, EA, EI, -tension / EA),
+        mass_per_length=per_length,
         element_mass=blocks,
         wire_mass=wire_mass,
         mass=(wire_mass + diags(np.repeat(masses, width) * points.ravel())).tocsr(),
@@ -253,6 +326,11 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
         force=force + held.force + installation.balance,
         alpha=float(catenary.damping.alpha),
         beta=float(catenary.damping.beta),
+        wires=tuple(
+            WireNodes(mesh.wire_name(n), int(first), wire.x, n < mesh.contact_wires, wire.supports)
+            for n, (first, wire) in enumerate(zip(first_nodes, mesh.wires, strict=False))
+        ),
+        contact_wire_height=catenary.contact_wire_height,
     )
 
 

@@ -65,6 +65,10 @@ def _lumped(run: Run) -> list[tuple[int, AnyPantograph]]:
     return [(i, p) for i, p in enumerate(run.pantographs) if p.stages]
 
 
+def _contact_stiffness(pantograph: AnyPantograph) -> float:
+    return pantograph.assemble(spatial=False).contact.stiffness
+
+
 def _name(run: Run, pantograph: int) -> str:
     return str(run.data["pantograph"].values[pantograph])
 
@@ -92,8 +96,8 @@ def _penetration(run: Run) -> Iterator[Check]:
         span = int(np.searchsorted(run.data["support_position"].values, x))
         text = (
             f"so deep the head of {_name(run, i)} goes into the wire at {x:.1f} m (span {span}), under"
-            f" {force:.0f} N; raise contact_stiffness from {pantograph.contact_stiffness:g} N/m, or find what"
-            " the head hits there"
+            f" {force:.0f} N; raise contact_stiffness from {_contact_stiffness(pantograph):g} N/m, or find"
+            " what the head hits there"
         )
         found.append((1e3 * float(depth.max()), text))
     if found:
@@ -131,7 +135,7 @@ def _force_balance(run: Run) -> Iterator[Check]:
         yield Check("force balance", value, "%", "at most", 100 * IMBALANCE, text)
 
 
-def _chain(run: Run, number: int, pantograph: Pantograph) -> tuple[Floats, Floats]:
+def _chain(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Floats, Floats]:
     """Masses [kg] of a pantograph, strips first, and their heights [m], shape (masses, times)."""
     strips = pantograph.head.strips if pantograph.head else 1
     first, *others = pantograph.stages
@@ -268,7 +272,7 @@ def _steps_per_period(run: Run) -> Iterator[Check]:
     """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
     found = [(CUT_OFF, "the filter's cut-off")]
     for i, p in _lumped(run):
-        resonance = sqrt(p.contact_stiffness / p.stages[0].mass) / (2 * pi)
+        resonance = sqrt(_contact_stiffness(p) / p.stages[0].mass) / (2 * pi)
         found.append((resonance, f"the resonance of the head of {_name(run, i)} on its contact spring"))
     highest, what = max(found)
     text = (

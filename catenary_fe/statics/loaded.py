@@ -9,19 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.cable import Cables, hermite, inner_forces, tangent_blocks
+from catenary_fe.fe.cable import Cables, inner_forces, tangent_blocks
 from catenary_fe.fe.spring import spring_blocks
-from catenary_fe.fe.system import System, assemble
+from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
+from catenary_fe.statics.newton import force_floor, minimise
 from catenary_fe.statics.shape import Shape
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Progress = Callable[[float], None]
 
-_ITERATIONS, _LEAST_STEP, _LOAD_STEPS = 60, 1e-4, 20
-_SETTLED = 1e-9  # of the largest force on a coordinate; rounding of EA ε leaves 1e-5 N
-_FLOOR = 1e-4  # [N]
+_LOAD_STEPS = 20
 _NEAR, _FAR = 1, 2  # spans beside that of a force; what is left out there moves a lift by up to 4e-4
 _NARROW: dict[str, Any] = {  # in the order of the stations the factor is narrow
     "permc_spec": "NATURAL",
@@ -36,23 +35,16 @@ class LoadedLine:
 
     def __init__(self, shape: Shape) -> None:
         self.shape = shape
-        self.system: System = assemble(shape.catenary, shape.mesh, shape.installation)
+        self.system: System = shape.system
 
     def at(self, x: float) -> tuple[Integers, Floats]:
         """Coordinates at a place [m] along the line, and how a height there is made of them.
 
         Shape (contact wires, 4) both: height and vertical slope of the two nodes about it.
         """
-        mesh, axes = self.shape.mesh, self.system.axes
-        index, weights = [], []
-        for number, line in enumerate(self.shape.installation.lines[: mesh.contact_wires]):
-            stations = mesh.wires[number].x
-            e = min(max(int(np.searchsorted(stations, x, side="right")) - 1, 0), stations.size - 2)
-            first = 2 * axes * (int(mesh.first_nodes[number]) + e) + axes - 1
-            index.append(first + axes * np.arange(4))
-            share = (x - stations[e]) / (stations[e + 1] - stations[e])
-            weights.append(hermite(share, line.lengths[e]) / mesh.contact_wires)
-        return np.array(index), np.array(weights)
+        found = [(path, *path.at(x)) for path in self.system.contact_paths]
+        index = [path.index[e : e + 2].ravel() for path, e, _ in found]
+        return np.array(index), np.array([weights for *_, weights in found]) / len(found)
 
     def load(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
         """[N], shape (all,): upward forces [N] at places [m] along the line."""
@@ -78,47 +70,35 @@ class LoadedLine:
         what = ", ".join(f"{f:g} N at {x:g} m" for x, f in zip(positions, forces, strict=True))
         raise SolverError(
             f"static load ({what}): no static equilibrium found, neither at once nor in {_LOAD_STEPS} steps"
-            f" of the load: {np.abs(residual).max():.3g} N are left {self._place(residual)}; try a smaller"
-            " force, and look there for stiffnesses and tensions that are far from usual values"
+            f" of the load: {np.abs(residual).max():.3g} N are left at the {self._worst(residual)}; try a"
+            " smaller force, and look there for stiffnesses and tensions that are far from usual values"
         )
 
     def _newton(self, moved: Floats, load: Floats) -> tuple[Floats, Floats | None]:
-        """Displacements, and what is left out of balance if that is too much, shape (all,).
-
-        Newton's method on the energy, the step shortened where it would raise it.
-        """
-        from scipy.sparse.linalg import splu
-
+        """Displacements, and what is left out of balance if that is too much, shape (all,)."""
         system = self.system
-        floor = max(_FLOOR, _SETTLED * float(np.abs(system.force + load).max()))
-        for _ in range(_ITERATIONS):
-            residual = system.gather(system.out_of_balance(moved) + load)
-            if not np.isfinite(residual).all():
-                break
-            if np.abs(residual).max() <= floor:
-                return moved, None
-            try:
-                step = splu(system.tangent(moved, taut=False).tocsc()).solve(residual)
-            except RuntimeError:  # singular
-                break
-            energy, slope = system.energy(moved) - load @ moved, float(residual @ step)
-            share = 1.0
-            while share > _LEAST_STEP:
-                trial = moved + share * system.spread(step)
-                rise = system.energy(trial) - load @ trial - energy
-                if rise <= -1e-4 * share * slope + 1e-11 * abs(energy):
-                    break
-                share /= 2
-            moved = moved + share * system.spread(step)
-        return moved, system.spread(system.gather(system.out_of_balance(moved) + load))
 
-    def _place(self, residual: Floats) -> str:
+        def residual(x: Floats) -> Floats:
+            return system.gather(system.out_of_balance(system.spread(x)) + load)
+
+        def energy(x: Floats) -> float:
+            return float(system.energy(system.spread(x)) - load @ system.spread(x))
+
+        start = np.zeros(system.size)
+        free = system.place >= 0
+        start[system.place[free]] = moved[free]
+        x, found = minimise(
+            start,
+            residual,
+            lambda x: system.tangent(system.spread(x), taut=False),
+            energy,
+            force_floor(system, load),
+        )
+        return system.spread(x), None if found else system.spread(residual(x))
+
+    def _worst(self, residual: Floats) -> str:
         """Where most is out of balance, in words."""
-        mesh = self.shape.mesh
-        worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax()) // (2 * self.system.axes)
-        wire = int(np.searchsorted(mesh.first_nodes, worst, side="right")) - 1
-        x = mesh.wires[wire].x[worst - mesh.first_nodes[wire]]
-        return f"on the {mesh.wire_name(wire)} at {x:.1f} m along the line"
+        return self.system.name(int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax()))
 
     def lifts(self, positions: Floats, force: float, progress: Progress | None = None) -> Floats:
         """[m], shape (points,): lift of the contact wire at each place [m] under a force [N] there.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
+from catenary_fe.fe.system import System, assemble
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.arguments import on_the_wire
 from catenary_fe.layout.frozen import changed_by_copy
@@ -84,6 +86,11 @@ class Shape:
     wires: tuple[HangingWire, ...]
     dropper_forces: Floats
     installed_lengths: Floats
+
+    @cached_property
+    def system(self) -> System:
+        """The assembled line, from which every engine starts."""
+        return assemble(self.catenary, self.mesh, self.installation)
 
     @property
     def contact_wires(self) -> tuple[HangingWire, ...]:

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from catenary_fe.engines.stopped import RunStopped
+from catenary_fe.engines.history import RunStopped
 from catenary_fe.layout import RunInterrupted, SolverError
 from catenary_fe.results import Run
 
 if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
+    from catenary_fe.engines.history import History
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph
 from catenary_fe.results import Run
@@ -19,7 +20,7 @@ from catenary_fe.results.run import FORMAT
 from catenary_fe.statics import Shape
 
 if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
+    from catenary_fe.engines.history import History
 
 Floats = NDArray[np.float64]
 _NOTES = 3  # by themselves
@@ -28,18 +29,17 @@ CHECKPOINT_FORM = 3  # rises when what a checkpoint holds changes
 
 def make_run(
     shape: Shape,
-    pantographs: Sequence[AnyPantograph],
+    case: RunCase,
     uplifts: Floats,
-    speed: float,
     time: TimeSettings,
     history: History,
     warnings: Sequence[str],
-    method: str = "nonlinear",
+    method: str,
 ) -> Run:
-    """Label a history's histories and note where they come from."""
+    """Label what a run recorded, and note where it comes from."""
     import xarray as xr
 
-    catenary = shape.catenary
+    catenary, pantographs, speed = shape.catenary, case.pantographs, case.speed
     static = np.array([w.z[m.supports] for w, m in zip(shape.contact_wires, shape.mesh.wires, strict=False)])
     nominal = catenary.contact_wire_height
     by_time = ("pantograph", "time")

@@ -8,38 +8,33 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
-from catenary_fe.engines.compiled import COMPILED
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary, aimed, share_of
-from catenary_fe.engines.linearised.start import can_be_compiled
+from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted, counted
 from catenary_fe.layout.arguments import checked, number, numbers, one_of
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
 from catenary_fe.studies.checks import check_heads, check_pantographs, check_speed, run_warnings
+from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
 from catenary_fe.studies.mean_force import MeanForce
 from catenary_fe.studies.partial import kept_when_stopped
 from catenary_fe.studies.record import make_run, run_key
 from catenary_fe.studies.resources import check_memory, demand
 
-if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
-
 Floats = NDArray[np.float64]
-Progress = Callable[[float], None]
 
 Method = Literal["nonlinear", "linearised", "exudyn"]
 
 AIMING = 0.1  # share of linearised runs in the work of one that follows them
 
-Pairs = Sequence[tuple[AnyPantograph, float]]
-Drive = Callable[[Pairs, float, Floats, int, Progress | None, Checkpoint | None], "History"]
+Drive = Callable[[RunCase, Floats, Progress | None, Checkpoint | None], History]
 
 _log = logging.getLogger(__name__)
 
@@ -82,9 +77,8 @@ def simulate(
     store_wire : [s] between stored shapes of the whole wires, rounded to whole time steps; unset: none
     progress : called with the share done, 0 to 1
     method : "nonlinear" in compiled code; "exudyn" the same with Exudyn's own solver, many times slower, to
-        compare with, or where nothing compiled is there for a pantograph or this machine; "linearised" about
-        the static state, many times faster: slack droppers and contact are solved in each step, large motions
-        are not there. It warns where they matter.
+        compare with; "linearised" about the static state, many times faster: slack droppers and contact are
+        solved in each step, large motions are not there. It warns where they matter.
     energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
         judges, a quarter slower; runs with the method "nonlinear" always do
     checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
@@ -98,10 +92,9 @@ def simulate(
     check_pantographs(pantographs)
     time = time or TimeSettings()
     _check_options(speed, method, energy, time, store_wire)
-    compiled = method == "nonlinear" and COMPILED and all(can_be_compiled(p) for p in pantographs)
-    if checkpoint is not None and not compiled:
+    if checkpoint is not None and method != "nonlinear":
         raise InputError(
-            f"checkpoint {checkpoint}: only compiled runs with the method nonlinear keep one; leave it out"
+            f"checkpoint {checkpoint}: only runs with the method nonlinear keep one; leave it out"
         )
     plan = plan_run(shape, len(pantographs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
@@ -110,24 +103,24 @@ def simulate(
         warnings.append(
             f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
         )
-    case = Case(pantographs, speed, plan.start, plan.distance, warnings)
+    case = RunCase(pantographs, speed, plan.start, plan.distance, warnings)
     _check_room(shape, case, time, store_wire, method)
     for warning in warnings:
         _log.warning(warning)
     if method == "linearised":
         return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
     set_up = partial(_compiled, shape, time, store_wire)
-    if not compiled:
-        set_up = partial(_by_exudyn, shape, time, store_wire, energy or method == "nonlinear")
+    if method == "exudyn":
+        set_up = partial(_by_exudyn, shape, time, store_wire, energy)
 
     def label(uplifts: Floats, history: History) -> Run:
-        return make_run(shape, pantographs, uplifts, speed, time, history, warnings, method)
+        return make_run(shape, case, uplifts, time, history, warnings, method)
 
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
     force = MeanForce(pantographs, speed)
-    if force.sought and COMPILED and not (keeper and keeper.kept):
+    if force.sought and not (keeper and keeper.kept):
         force, progress = _aimed(shape, case, time, progress)
     return _told(_until_mean_force(case, time, force, set_up, label, progress, keeper), len(warnings))
 
@@ -151,7 +144,7 @@ def _check_options(
 
 
 def _check_room(
-    shape: Shape, case: Case, time: TimeSettings, store_wire: float | None, method: Method
+    shape: Shape, case: RunCase, time: TimeSettings, store_wire: float | None, method: Method
 ) -> None:
     """Raises InputError for a run that takes more memory than there is."""
     duration = case.distance / case.speed
@@ -166,16 +159,16 @@ def _check_room(
 
 
 def _linearised(
-    shape: Shape, time: TimeSettings, store_wire: float | None, case: Case, progress: Progress | None
+    shape: Shape, time: TimeSettings, store_wire: float | None, case: RunCase, progress: Progress | None
 ) -> Run:
-    (result,) = LinearisedCatenary(shape, time, store_wire).run([case], progress)
+    (result,) = LinearisedLine(shape, time, store_wire).run([case], progress)
     if isinstance(result, CatenaryError):
         raise result
     return result
 
 
 def _aimed(
-    shape: Shape, case: Case, time: TimeSettings, progress: Progress | None
+    shape: Shape, case: RunCase, time: TimeSettings, progress: Progress | None
 ) -> tuple[MeanForce, Progress | None]:
     """Uplifts to begin with, found by linearised runs, and the progress of what is left to do."""
     try:
@@ -186,7 +179,7 @@ def _aimed(
 
 
 def _until_mean_force(
-    case: Case,
+    case: RunCase,
     time: TimeSettings,
     force: MeanForce,
     set_up: Callable[[], Drive],
@@ -198,16 +191,15 @@ def _until_mean_force(
 
     label : makes a run of uplifts and a history
     """
-    steps = int(np.floor(case.distance / (case.speed * time.step) + 1e-9))
+    steps = case.steps(time.step)
     if keeper:
         force.take_up(keeper)
     begin = clock.perf_counter()
     drive = set_up()
     while True:
-        pairs = list(zip(case.pantographs, force.uplifts.tolist(), strict=True))
         labelled = partial(label, force.uplifts)
         with kept_when_stopped(labelled, steps * time.step):
-            run = labelled(drive(pairs, case.speed, case.start, steps, progress, keeper))
+            run = labelled(drive(case, force.uplifts, progress, keeper))
         run = Run(run.data, clock.perf_counter() - begin)
         reached = force.reached(run)
         if keeper:
@@ -218,9 +210,9 @@ def _until_mean_force(
 
 
 def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
-    from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+    from catenary_fe.engines.nonlinear.run import NonlinearEngine
 
-    return NonlinearCatenary(shape, time, store_wire).drive
+    return NonlinearEngine(shape.system, time, store_wire).run
 
 
 def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool) -> Drive:
@@ -230,16 +222,13 @@ def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energ
     every = max(INTERVAL, time.step) if energy else None
 
     def drive_it(
-        pantographs: Pairs,
-        speed: float,
-        positions: Floats,
-        steps: int,
-        progress: Progress | None,
-        checkpoint: Checkpoint | None,
+        case: RunCase, uplifts: Floats, progress: Progress | None, checkpoint: Checkpoint | None
     ) -> History:
         assert checkpoint is None
-        trip = Trip(speed, positions, steps, time, wire_interval=store_wire, energy_interval=every)
-        return drive(shape.catenary, shape.mesh, shape.installation, pantographs, trip, progress)
+        steps = case.steps(time.step)
+        trip = Trip(case.speed, case.start, steps, time, wire_interval=store_wire, energy_interval=every)
+        pairs = list(zip(case.pantographs, uplifts.tolist(), strict=True))
+        return drive(shape.catenary, shape.mesh, shape.installation, pairs, trip, progress)
 
     return drive_it
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.engines.arrays import SLOTS
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
@@ -29,6 +29,7 @@ from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape, find_form
 from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
+from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.studies.simulate import Method, plan_run, simulate
 from catenary_fe.studies.sweep_store import Record, Store, open_store
@@ -339,7 +340,7 @@ def _without_warnings() -> Iterator[None]:
 def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
     shape, line = _linearised(cases[0].catenary, settings.mesh, settings.time)
     records: list[Record] = []
-    good: list[Case] = []
+    good: list[RunCase] = []
     for case in cases:
         try:
             check_speed(case.speed)
@@ -347,7 +348,7 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
             first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
             check_heads(shape, case.pantographs, first, last)
             doubts = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
-            good.append(Case(case.pantographs, case.speed, plan.start, plan.distance, doubts))
+            good.append(RunCase(case.pantographs, case.speed, plan.start, plan.distance, doubts))
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))
@@ -392,8 +393,6 @@ def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
 
 
 @lru_cache(maxsize=2)
-def _linearised(
-    catenary: Catenary, mesh: MeshSettings, time: TimeSettings
-) -> tuple[Shape, LinearisedCatenary]:
+def _linearised(catenary: Catenary, mesh: MeshSettings, time: TimeSettings) -> tuple[Shape, LinearisedLine]:
     shape = _shape(catenary, mesh)
-    return shape, LinearisedCatenary(shape, time)
+    return shape, LinearisedLine(shape, time)

@@ -29,6 +29,7 @@ from catenary_fe.fe.installation import (
     wire_kinds,
 )
 from catenary_fe.fe.mesh import Mesh
+from catenary_fe.fe.system import System, assemble
 from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ class Model:
     wires : contact wires, messenger wire, stitch wires, as in the mesh
     overlay : number of the object that carries what acts along the wires
     droppers : numbers of the dropper connectors
-    dropper_lengths : [m], stress-free
+    installation : where the wires hang
     ground : number of a coordinate marker that never moves
     """
 
@@ -52,8 +53,13 @@ class Model:
     wires: tuple[WireItems, ...]
     overlay: int
     droppers: list[int]
-    dropper_lengths: Floats
+    installation: Installation
     ground: int
+
+    @property
+    def system(self) -> System:
+        """The same line as arrays."""
+        return assemble(self.catenary, self.mesh, self.installation)
 
     @property
     def contact(self) -> WireItems:
@@ -74,6 +80,11 @@ class Model:
     def contact_wire_height(self) -> float:
         """[m], nominal."""
         return self.catenary.contact_wire_height
+
+    @property
+    def dropper_lengths(self) -> Floats:
+        """[m], shape (droppers,), stress-free."""
+        return self.installation.dropper_lengths
 
     @property
     def axes(self) -> int:
@@ -114,8 +125,7 @@ def build_model(catenary: Catenary, mesh: Mesh, installation: Installation) -> M
     contacts, messenger = wires[: mesh.contact_wires], wires[mesh.contact_wires]
     add_arms(mbs, catenary, mesh, contacts, ground, installation.arm_forces)
     add_supports(mbs, catenary, mesh, messenger, ground, installation.support_forces)
-    lengths = installation.dropper_lengths
-    return Model(mbs, catenary, mesh, wires, overlay, droppers, lengths, ground)
+    return Model(mbs, catenary, mesh, wires, overlay, droppers, installation, ground)
 
 
 def _overlay(

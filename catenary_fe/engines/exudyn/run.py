@@ -16,8 +16,8 @@ from catenary_fe.engines.exudyn.model import Model, build_model
 from catenary_fe.engines.exudyn.pantograph import PantographItems, add_pantographs
 from catenary_fe.engines.exudyn.solver import release, solve_dynamic, solve_static
 from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_steps
+from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.engines.stopped import FEWEST, RunStopped
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.installation import Installation, dropper_damping
 from catenary_fe.fe.mesh import Mesh
@@ -29,81 +29,6 @@ STRETCH = 25  # steps that are divided from where one failed
 MOST_PARTS = 8
 
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class History:
-    """What a run recorded, at every time step, the initial state included.
-
-    time : [s], shape (times,)
-    position : [m], shape (pantographs, times), along the track
-    contact_force : [N], shape (pantographs, times), of all strips on all contact wires
-    wire_height : [m], shape (pantographs, times), of the contact wire over the head, above its nominal
-        height; of several points of contact, their mean
-    mass_heights : [m], for each pantograph shape (masses, times), above the nominal contact wire height
-    dropper_force : [N], shape (droppers, times)
-    support_height : [m], shape (contact wires, spans + 1, times), of the contact wires at the supports
-    wire_x, wire_z : [m], for each wire its stations (nodes,) and its heights (shape times, nodes), or none
-    wire_times : [s], times of ``wire_z``
-    energy : [J], shape (energy_times,), kinetic and stored, without the contacts', or empty
-    energy_times : [s]
-    driven_work : [J], shape (times,), done on wires and masses by the contacts, or empty: what the moving
-        bases put in over the wire's inclination, less what the contacts store and damp
-    lost_work : [J], shape (times,), lost in the dampers of wires, droppers, supports and pantographs, or none
-    tension_change : shape (wires, tension_times), largest relative change of each wire's tension between two
-        supports since the start, or none
-    tension_span : shape (wires, tension_times), number of the span (from 1) where that is
-    tension_times : [s]
-    notes : what to warn of in the result
-    """
-
-    time: Floats
-    position: Floats
-    contact_force: Floats
-    wire_height: Floats
-    mass_heights: list[Floats]
-    dropper_force: Floats
-    support_height: Floats
-    wire_x: list[Floats]
-    wire_z: list[Floats]
-    wire_times: Floats | None
-    energy: Floats
-    energy_times: Floats
-    driven_work: Floats
-    lost_work: Floats | None = None
-    tension_change: Floats | None = None
-    tension_span: NDArray[np.int64] | None = None
-    tension_times: Floats | None = None
-    notes: tuple[str, ...] = ()
-
-    def until(self, steps: int) -> History | None:
-        """The history of the first steps, or None where those are too few to be of use."""
-        if steps < FEWEST:
-            return None
-        n, shapes = steps + 1, 0
-        if self.wire_times is not None:
-            shapes = int((self.wire_times <= self.time[steps]).sum())
-        energies = int((self.energy_times <= self.time[steps]).sum())
-        tensions = 0 if self.tension_times is None else int((self.tension_times <= self.time[steps]).sum())
-        return replace(
-            self,
-            time=self.time[:n],
-            position=self.position[:, :n],
-            contact_force=self.contact_force[:, :n],
-            wire_height=self.wire_height[:, :n],
-            mass_heights=[heights[:, :n] for heights in self.mass_heights],
-            dropper_force=self.dropper_force[:, :n],
-            support_height=self.support_height[..., :n],
-            wire_z=[z[:shapes] for z in self.wire_z],
-            wire_times=None if self.wire_times is None else self.wire_times[:shapes],
-            energy=self.energy[:energies],
-            energy_times=self.energy_times[:energies],
-            driven_work=self.driven_work[:n],
-            lost_work=None if self.lost_work is None else self.lost_work[:n],
-            tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
-            tension_span=None if self.tension_span is None else self.tension_span[:, :tensions],
-            tension_times=None if self.tension_times is None else self.tension_times[:tensions],
-        )
 
 
 @dataclass(frozen=True)
@@ -250,8 +175,7 @@ class _Recorder:
             if trip.energy_interval
             else None
         )
-        lines = [wire.line for wire in model.wires]
-        self._tension = TensionRecord(TensionGauge(catenary, mesh, lines))
+        self._tension = TensionRecord(TensionGauge(model.system))
         self._tension_every = max(1, round(INTERVAL / trip.time.step))
         self.done = -1  # last step on record
         self._state = np.zeros(0), np.zeros(0)
@@ -281,7 +205,8 @@ class _Recorder:
         strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
         return (
             f"{what}: no convergence after t = {trip.time.step * n:.4f} s with steps of {trip.time.step:g} s"
-            f" and of 1/{MOST_PARTS} of it; {place_of_heads(catenary, positions)}, contact force {forces};"
+            f" and of 1/{MOST_PARTS} of it; {place_of_heads(catenary.support_positions, positions)}, contact"
+            f" force {forces};"
             f" {strained + '; ' if strained else ''}look at the stiffness and uplift_force there, and try a"
             " smaller time step"
         )
@@ -352,7 +277,11 @@ class _Recorder:
             tension_times=self._tension.times,
             notes=tuple(
                 smaller_steps(
-                    model.catenary, trip.start + trip.speed * at, at, parts, 1e3 * STRETCH * trip.time.step
+                    model.catenary.support_positions,
+                    trip.start + trip.speed * at,
+                    at,
+                    parts,
+                    1e3 * STRETCH * trip.time.step,
                 )
                 for at, parts in self._notes.items()
             ),

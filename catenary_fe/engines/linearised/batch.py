@@ -1,28 +1,27 @@
-"""Batch in which linearised runs advance side by side; a slot whose run is over takes the next one."""
+"""Slots in which linearised runs advance side by side; a slot whose run is over takes the next one."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines import arrays, contact_solver, generalized_alpha, kernels
+from catenary_fe.engines import arrays as shared
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels
 from catenary_fe.engines.arrays import (
     SLOTS,
-    Heads,
-    Line,
-    Operator,
+    PantographParameters,
+    PantographState,
     Records,
     Wires,
     Work,
 )
-from catenary_fe.engines.compiled import COMPILED, compiled, kept, stamp, vectorising
-from catenary_fe.engines.contact_solver import advance_heads, record, solve_contacts
-from catenary_fe.engines.generalized_alpha import Scheme, advance, predict
+from catenary_fe.engines.compiled import compiled, kept, stamp, vectorising
+from catenary_fe.engines.contact_solver import advance_heads
+from catenary_fe.engines.generalized_alpha import Scheme, predict
+from catenary_fe.engines.history import History
 from catenary_fe.engines.kernels import (
-    couple_stretch_eight,
-    couple_stretch_one,
     lower_eight,
     lower_one,
     take_eight,
@@ -30,13 +29,20 @@ from catenary_fe.engines.kernels import (
     upper_eight,
     upper_one,
 )
+from catenary_fe.engines.linearised import arrays, forces, stretch
+from catenary_fe.engines.linearised.arrays import Line, Operator
+from catenary_fe.engines.linearised.forces import record, solve_contacts
 from catenary_fe.engines.linearised.setup import Setup, make_operator
-from catenary_fe.engines.linearised.start import InitialState
-from catenary_fe.engines.recorder import Sizes, load_heads, make_heads, make_records, read_journey
-from catenary_fe.statics import Shape
-
-if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
+from catenary_fe.engines.linearised.stretch import couple_stretch_eight, couple_stretch_one
+from catenary_fe.engines.recorder import (
+    InitialState,
+    Sizes,
+    load_pantographs,
+    make_pantographs,
+    make_records,
+    read_history,
+)
+from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -51,9 +57,9 @@ class Batch:
         n, line = setup.size, setup.line
         j, m = sizes.contacts, sizes.coordinates
         self._setup, self.count = setup, slots
-        self._operator = make_operator(setup, slots) if COMPILED else None
+        self._operator = make_operator(setup, slots)
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
-        self.heads = make_heads(slots, sizes, setup.nominal)
+        self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal)
         width = 2 * line.contact_compliance.value.shape[1]
         self.work = Work(
             force=np.zeros((slots, j)),
@@ -68,6 +74,7 @@ class Batch:
             shape=np.zeros((slots, j, 5)),
             rise=np.zeros((slots, j, 5)),
             at=np.zeros((slots, j, 4), dtype=np.int64),
+            on=np.zeros((slots, j), dtype=np.int64),
             head=np.zeros((slots, j, m)),
             head_compliance=np.zeros((slots, j, m)),
         )
@@ -84,7 +91,7 @@ class Batch:
         for array in (self.work.force, self.work.slack, self.work.arm_force):
             array[slot] = 0.0  # forces with which the run before ended
         self.work.tension[slot] = start.q[self._setup.line.tensions]
-        load_heads(self.heads, self.records, slot, self._setup.scheme, start, steps)
+        load_pantographs(self.heads, self.pantographs, self.records, slot, self._setup.scheme, start, steps)
         supports, heights = self._setup.line.supports, self._setup.model.heights
         self.records.supports[slot, supports >= 0, 0] = start.q[supports[supports >= 0]]
         if self.records.every:
@@ -93,18 +100,15 @@ class Batch:
     def advance(self, steps: int = BLOCK) -> None:
         """Take steps in all slots; slots that are at their end stay there."""
         setup, wires = self._setup, self.wires
-        rest = (self.heads, self.work, self.records, steps)
-        if self._operator is None:
-            _advance_plainly(setup, wires, *rest)
-            return
+        rest = (self.heads, self.pantographs, self.work, self.records, steps)
         flat = Wires(*(array.reshape(-1) for array in wires))
         with vectorising():
             take = _advance_one if self.count == 1 else _advance_eight
             take(setup.scheme, self._operator, setup.line, wires, flat, *rest)
 
-    def history(self, slot: int, start: InitialState, steps: int, shape: Shape) -> History:
+    def history(self, slot: int, start: InitialState, steps: int, system: System) -> History:
         """What a slot's run recorded."""
-        return read_journey(self.records, self.heads, slot, start, steps, self._setup.scheme.h, shape)
+        return read_history(self.records, self.heads, slot, start, steps, self._setup.scheme.h, system)
 
     def tension_changes(self, slot: int) -> tuple[Floats, Integers]:
         """[N], shape (gaps,): largest change of each gap's tension, and the steps at whose ends they are."""
@@ -116,18 +120,26 @@ class Batch:
 
     def free(self) -> list[int]:
         """Batch whose run is over."""
-        return np.flatnonzero(self.heads.step >= self.heads.last).tolist()
+        return np.flatnonzero(self.pantographs.step >= self.heads.last).tolist()
 
 
 @compiled
-def _finish(scheme: Scheme, line: Line, wires: Wires, heads: Heads, work: Work, records: Records) -> None:
+def _finish(
+    scheme: Scheme,
+    line: Line,
+    wires: Wires,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    work: Work,
+    records: Records,
+) -> None:
     """Forces and records of all slots, and the next step's prediction of the masses."""
-    for c in range(heads.step.size):
-        if heads.step[c] < heads.last[c]:
-            solve_contacts(scheme, line, wires, heads, work, records, c)
-            record(scheme, line, wires, heads, work, records, c)
-            advance_heads(scheme, heads, c)
-            heads.step[c] += 1
+    for c in range(pantographs.step.size):
+        if pantographs.step[c] < heads.last[c]:
+            solve_contacts(scheme, line, wires, heads, pantographs, work, records, c)
+            record(scheme, line, wires, heads, pantographs, work, records, c)
+            advance_heads(scheme, pantographs, c)
+            pantographs.step[c] += 1
 
 
 def _loops(sources: str) -> tuple[Any, Any]:
@@ -140,7 +152,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
         line: Line,
         wires: Wires,
         flat: Wires,
-        heads: Heads,
+        heads: PantographParameters,
+        pantographs: PantographState,
         work: Work,
         records: Records,
         steps: int,
@@ -153,7 +166,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             couple_stretch_one(line, flat.q, work.tension[0], flat.x)
             lower_one(operator.lower, flat.x, 0, groups)
             upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
-            _finish(scheme, line, wires, heads, work, records)
+            _finish(scheme, line, wires, heads, pantographs, work, records)
             predict(scheme, operator.beta, flat)
         return len(sources)
 
@@ -164,7 +177,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
         line: Line,
         wires: Wires,
         flat: Wires,
-        heads: Heads,
+        heads: PantographParameters,
+        pantographs: PantographState,
         work: Work,
         records: Records,
         steps: int,
@@ -177,32 +191,16 @@ def _loops(sources: str) -> tuple[Any, Any]:
             couple_stretch_eight(line, wires.q, work.tension, wires.x)
             lower_eight(operator.lower, wires.x)
             upper_eight(operator.upper, operator.inverse, wires.x)
-            _finish(scheme, line, wires, heads, work, records)
+            _finish(scheme, line, wires, heads, pantographs, work, records)
             predict(scheme, operator.beta, flat)
         return len(sources)
 
     return one, eight
 
 
-_advance_one, _advance_eight = _loops(stamp(arrays, generalized_alpha, contact_solver, kernels))
-
-
-def _advance_plainly(
-    setup: Setup, wires: Wires, heads: Heads, work: Work, records: Records, steps: int
-) -> None:
-    """Without a compiler: scipy's products and solves, the few forces in Python."""
-    model, scheme = setup.model, setup.scheme
-    for _ in range(steps):
-        if (heads.step >= heads.last).all():
-            return
-        wires.x[:] = setup.line.load[:, None] - (model.stiffness @ wires.q + model.damping @ wires.v)
-        for slot in range(wires.x.shape[1]):
-            couple_stretch_one(setup.line, wires.q[:, slot], work.tension[slot], wires.x[:, slot])
-        wires.x[:] = setup.factor.solve(wires.x)
-        _finish(scheme, setup.line, wires, heads, work, records)
-        state = advance(scheme, wires.q, wires.v, wires.c, wires.x)
-        for array, values in zip(wires, state, strict=False):
-            array[:] = values
+_advance_one, _advance_eight = _loops(
+    stamp(shared, generalized_alpha, contact_solver, kernels, arrays, forces, stretch)
+)
 
 
 def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> int:

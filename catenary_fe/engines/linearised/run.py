@@ -1,212 +1,158 @@
 """Linearised runs: the same model about its static state, with what is truly nonlinear kept.
 
 Contact that never pulls, droppers that go slack and arms that swing are solved in each step, and tension
-changes with the wires' inclination; other large motions are not there. Runs on one catenary share one
+changes with the wires' inclination; other large motions are not there. Runs on one line share one
 factorisation and advance side by side.
 """
 
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.base import Progress, RunCase
+from catenary_fe.engines.history import History
 from catenary_fe.engines.linearised.batch import BLOCK, Batch, most_slots
-from catenary_fe.engines.linearised.doubts import slack_doubts, tension_doubts
 from catenary_fe.engines.linearised.setup import Setup, set_up
-from catenary_fe.engines.linearised.start import InitialState, assemble_pantograph, static_contact
-from catenary_fe.engines.recorder import Sizes
+from catenary_fe.engines.linearised.start import static_contact
+from catenary_fe.engines.recorder import InitialState, Sizes
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.layout import AnyPantograph, CatenaryError, SolverError
-from catenary_fe.results import Run
-from catenary_fe.statics import Shape
-from catenary_fe.studies.mean_force import MeanForce
-from catenary_fe.studies.record import make_run
+from catenary_fe.fe.contact import place
+from catenary_fe.fe.reduction import LinearModel
+from catenary_fe.fe.system import System
+from catenary_fe.layout import CatenaryError, SolverError
 
 Floats = NDArray[np.float64]
-Progress = Callable[[float], None]
-
-AIMS = 2  # runs for an uplift: means are straight lines over it to 0.01 N
-NEAR = 0.3  # [N] from a mean force, where the slope of a single run, to 10 %, is good enough
+Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Case:
-    """One run to do.
+class Extremes:
+    """Where a run's motions were largest.
 
-    start : [m], shape (pantographs,)
-    distance : [m] that each pantograph runs
-    warnings : known before the run
+    tension, tension_step : [N], shape (gaps,), largest change of each gap's tension, and the step of it
+    shortening, shortening_step : [m], shape (droppers,), likewise of each dropper while slack
     """
 
-    pantographs: Sequence[AnyPantograph]
-    speed: float
-    start: Floats
-    distance: float
-    warnings: Sequence[str] = ()
+    tension: Floats
+    tension_step: Integers
+    shortening: Floats
+    shortening_step: Integers
+
+
+class Task(Protocol):
+    """A run to do, perhaps again and again with other uplifts."""
+
+    @property
+    def case(self) -> RunCase: ...
+
+    @property
+    def uplifts(self) -> Floats:
+        """[N], shape (pantographs,), of the next run."""
+
+    def finished(self, history: History, extremes: Extremes, seconds: float) -> bool:
+        """Take a run's history; false where it has to be run again."""
+
+    def failed(self, error: CatenaryError) -> None:
+        """Take a run's error."""
 
 
 @dataclass
 class _Job:
-    """A case on its way: tried with one uplift after the other until the mean forces are reached."""
+    """A task on its way through the batch."""
 
-    case: Case
-    number: int
+    task: Task
     steps: int
-    uplifts: MeanForce
     start: InitialState | None = None
     spent: float = 0.0
 
 
-class LinearisedCatenary:
-    """A catenary linearised about its static state, for any number of runs with one time step.
-
-    Raises SolverError if there is no static equilibrium.
-    """
+class LinearisedEngine:
+    """A line linearised about its static state, for any number of runs with one time step."""
 
     def __init__(
-        self, shape: Shape, time: TimeSettings | None = None, store_wire: float | None = None
+        self,
+        system: System,
+        model: LinearModel,
+        time: TimeSettings | None = None,
+        store_wire: float | None = None,
     ) -> None:
-        from catenary_fe.fe.reduction import linear_model
-
-        self._shape, self._time = shape, time or TimeSettings()
-        catenary = shape.catenary
-        model = linear_model(catenary, shape.mesh, shape.installation)
-        self._setup: Setup = set_up(model, self._time, catenary.damping.beta, catenary.contact_wire_height)
+        self._system, self._time = system, time or TimeSettings()
+        self.setup: Setup = set_up(model, self._time, system.beta, system.contact_wire_height)
         self._every = round(store_wire / self._time.step) if store_wire else 0
 
-    def run(self, cases: Sequence[Case], progress: Progress | None = None) -> list[Run | CatenaryError]:
-        """Run all cases; where one fails, its error stands in its place.
+    def run(self, tasks: Sequence[Task], progress: Progress | None = None) -> None:
+        """Run all tasks.
 
         progress : called with the share done, 0 to 1
         """
-        results: list[Run | CatenaryError | None] = [None] * len(cases)
-        jobs = []
-        for number, case in enumerate(cases):
-            try:
-                jobs.append(self._job(case, number))
-            except CatenaryError as error:
-                results[number] = error
+        jobs = [_Job(task, task.case.steps(self._time.step)) for task in tasks]
         waiting = sorted(jobs, key=lambda job: -job.steps)  # long ones first: the slots end together
         if not waiting:
-            return [r for r in results if r is not None]
+            return
         sizes = self._sizes(jobs)
-        slots = Batch(self._setup, sizes, most_slots(self._setup, sizes, len(jobs)), self._every)
+        batch = Batch(self.setup, sizes, most_slots(self.setup, sizes, len(jobs)), self._every)
         active: dict[int, _Job] = {}
-        done = len(cases) - len(jobs)
         while waiting or active:
-            for slot in slots.free():
+            for slot in batch.free():
                 job = active.pop(slot, None)
-                if job:
-                    result = self._finish(job, slots, slot)
-                    if result is None:
-                        waiting.insert(0, job)
-                    else:
-                        results[job.number] = result
-                        done += 1
+                if job and not self._finish(job, batch, slot):
+                    waiting.insert(0, job)
                 while waiting and slot not in active:
                     job = waiting.pop(0)
-                    failure = self._begin(job, slots, slot)
-                    if failure:
-                        results[job.number] = failure
-                        done += 1
-                    else:
+                    if self._begin(job, batch, slot):
                         active[slot] = job
             if active:
                 begin = clock.perf_counter()
-                slots.advance(BLOCK)
+                batch.advance(BLOCK)
                 for job in active.values():
                     job.spent += (clock.perf_counter() - begin) / len(active)
             if progress:
-                under_way = sum(min(slots.heads.step[slot] / job.steps, 1.0) for slot, job in active.items())
-                progress((done + under_way) / len(cases))
-        return [r for r in results if r is not None]
-
-    def _job(self, case: Case, number: int) -> _Job:
-        steps = int(np.floor(case.distance / (case.speed * self._time.step) + 1e-9))
-        return _Job(case, number, steps, MeanForce(case.pantographs, case.speed))
+                reached = batch.pantographs.step
+                under_way = sum(min(reached[slot] / job.steps, 1.0) for slot, job in active.items())
+                progress((len(jobs) - len(waiting) - len(active) + under_way) / len(jobs))
 
     def _sizes(self, jobs: Sequence[_Job]) -> Sizes:
-        """Of the cases that can be run; those that cannot fail when they begin."""
-        bodies = []
+        """Of the tasks that can be run; those that cannot fail when they begin."""
+        placed = []
         for job in jobs:
             with suppress(CatenaryError):
-                bodies.append([assemble_pantograph(self._setup.model, p) for p in job.case.pantographs])
+                case = job.task.case
+                placed.append(
+                    place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
+                )
         steps = max(job.steps for job in jobs)
-        return Sizes(
-            pantographs=max((len(c) for c in bodies), default=1),
-            contacts=max((sum(len(body.touches) for body in c) for c in bodies), default=1),
-            coordinates=max([1, *(len(body.K) for c in bodies for body in c)]),
-            steps=steps,
-            shapes=steps // self._every + 1 if self._every else 0,
-        )
+        return Sizes.of(placed, len(self.setup.model.contacts), steps, self._every)
 
-    def _begin(self, job: _Job, slots: Batch, slot: int) -> CatenaryError | None:
-        begin = clock.perf_counter()
-        case = job.case
+    def _begin(self, job: _Job, batch: Batch, slot: int) -> bool:
+        begin, case = clock.perf_counter(), job.task.case
         try:
-            start = static_contact(self._setup, case.pantographs, job.uplifts.uplifts, case.start, case.speed)
+            placed = place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
+            job.start = static_contact(self.setup, placed, case.speed)
         except CatenaryError as error:
-            return error
-        slots.load(slot, start, job.steps)
-        job.start = start
+            job.task.failed(error)
+            return False
+        batch.load(slot, job.start, job.steps)
         job.spent += clock.perf_counter() - begin
-        return None
+        return True
 
-    def _finish(self, job: _Job, slots: Batch, slot: int) -> Run | CatenaryError | None:
-        """The run, its error, or None if it has to be run again with another uplift."""
-        case = job.case
+    def _finish(self, job: _Job, batch: Batch, slot: int) -> bool:
+        """Hand over the run or its error; false if it has to be run again with another uplift."""
         assert job.start is not None
-        history = slots.history(slot, job.start, job.steps, self._shape)
+        history = batch.history(slot, job.start, job.steps, self._system)
         if not np.isfinite(history.contact_force).all():
-            return SolverError(
-                f"linearised run at {3.6 * case.speed:g} km/h: the contact force is not finite, or did not"
-                " settle in a step; look for stiffnesses far from usual values, or use a smaller time step"
+            error = SolverError(
+                f"linearised run at {3.6 * job.task.case.speed:g} km/h: the contact force is not finite, or"
+                " did not settle in a step; look for stiffnesses far from usual values, or use a smaller time"
+                " step"
             )
-        step, catenary = self._time.step, self._shape.catenary
-        warnings = [
-            *case.warnings,
-            *tension_doubts(catenary, self._setup.model.gaps, *slots.tension_changes(slot), step),
-            *slack_doubts(catenary, *slots.shortenings(slot), step),
-        ]
-        run = make_run(
-            self._shape, case.pantographs, job.uplifts.uplifts, case.speed, self._time, history, warnings,
-            method="linearised",
-        )  # fmt: skip
-        try:
-            reached = job.uplifts.reached(run)
-        except CatenaryError as error:
-            return error
-        return Run(run.data, job.spent) if reached else None
-
-
-def aimed(shape: Shape, case: Case, time: TimeSettings, progress: Progress | None = None) -> MeanForce:
-    """Uplifts for a run of another method: a mean depends on its uplift almost alike in all of them.
-
-    They are found by linearised runs; where such a run fails, they are the pantographs' own first guess.
-    Raises InputError where uplift and air push a pantograph down.
-    """
-    force = MeanForce(case.pantographs, case.speed)
-    try:
-        line = LinearisedCatenary(shape, time)
-        for n in range(AIMS):
-            part = share_of(progress, n / AIMS, 1 / AIMS)
-            (run,) = line.run([replace(case, pantographs=force.given())], part)
-            if isinstance(run, CatenaryError):
-                raise run
-            if force.aim(run) <= NEAR:
-                break
-        force.given()  # refuses uplifts that are none
-    except CatenaryError:
-        return MeanForce(case.pantographs, case.speed)
-    force.begin_anew()
-    return force
-
-
-def share_of(progress: Progress | None, begin: float, share: float) -> Progress | None:
-    """Progress of a part of the work, which begins where a share is done already."""
-    return (lambda done: progress(begin + share * done)) if progress else None
+            job.task.failed(error)
+            return True
+        extremes = Extremes(*batch.tension_changes(slot), *batch.shortenings(slot))
+        return job.task.finished(history, extremes, job.spent)

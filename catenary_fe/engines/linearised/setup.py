@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import (
+from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
+from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
+from catenary_fe.engines.linearised.arrays import (
     ComplianceColumns,
     Line,
     Operator,
     SteadyArmBars,
     StretchCoupling,
 )
-from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
-from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.reduction import LinearModel
 from catenary_fe.fe.spring import FIXED
@@ -104,7 +104,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
     from scipy.sparse import csc_matrix
 
     contacts = model.contacts
-    at = np.concatenate([wire.index for wire in contacts])
+    at = np.concatenate([wire.dof for wire in contacts])
     free = np.unique(at[at != FIXED])
     column = np.full(at.shape, FIXED, dtype=np.int64)
     column[at != FIXED] = np.searchsorted(free, at[at != FIXED])
@@ -113,7 +113,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         first=np.cumsum([0, *(wire.x.size for wire in contacts)]),
         x=np.concatenate([wire.x for wire in contacts]),
         lengths=np.concatenate([[*wire.lengths, 1.0] for wire in contacts]),
-        static=np.concatenate([wire.static for wire in contacts]),
+        profile=np.concatenate([wire.profile for wire in contacts]),
         lateral=np.concatenate([wire.lateral for wire in contacts]),
         at=at,
         column=column,
@@ -126,7 +126,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         links=_links(model, factor),
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
-        supports=np.concatenate([wire.supports for wire in contacts]),
+        supports=np.concatenate([wire.dof[wire.supports, 0] for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,
     )

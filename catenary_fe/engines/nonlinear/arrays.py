@@ -8,7 +8,7 @@ from catenary_fe.engines.arrays import Floats, Integers, PackedRows
 from catenary_fe.engines.nonlinear.cables import Elements
 
 
-class Ends(NamedTuple):
+class SpringArrays(NamedTuple):
     """Springs between points of the wires (droppers), or between them and fixed points (links).
 
     first, last : numbers of the first coordinates, among all, of the points; ``last`` of links has no use
@@ -24,8 +24,8 @@ class Ends(NamedTuple):
     d: Floats
 
 
-class System(NamedTuple):
-    """Equations of motion, see :class:`~catenary_fe.fe.nonlinear_model.NonlinearModel`.
+class Equations(NamedTuple):
+    """Equations of motion, see :class:`~catenary_fe.fe.system.System`.
 
     reference, place : shape (all,)
     ground, force : shape (free,)
@@ -35,8 +35,8 @@ class System(NamedTuple):
     reference: Floats
     place: Integers
     elements: Elements
-    droppers: Ends
-    links: Ends
+    droppers: SpringArrays
+    links: SpringArrays
     ground: Floats
     force: Floats
     mass: PackedRows
@@ -48,7 +48,7 @@ class Stations(NamedTuple):
 
     first : shape (contact wires + 1,), where the wires' nodes begin
     x, lengths : [m], shape (nodes,)
-    static, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
+    profile, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
     at : shape (nodes, 2), free coordinates of height and slope
     supports : shape (contact wires * supports,), numbers of heights among all coordinates
     heights : shape (nodes of all wires,), likewise
@@ -59,7 +59,7 @@ class Stations(NamedTuple):
     first: Integers
     x: Floats
     lengths: Floats
-    static: Floats
+    profile: Floats
     lateral: Floats
     at: Integers
     supports: Integers

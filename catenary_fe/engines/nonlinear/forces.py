@@ -9,14 +9,14 @@ from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.contact_solver import one_way
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.kernels import lower_one, upper_one
-from catenary_fe.engines.nonlinear.arrays import Ends, EnergyBalance, Factor, Motion, Slack, System
+from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, SpringArrays
 
 REACH = 64  # groups of four coordinates beyond which a force is not felt within a step
 ROOM = 4 * 3 * REACH  # coordinates of the largest window
 
 
 @compiled
-def take_links(links: Ends, total: Floats, inner: Floats) -> None:
+def take_links(links: SpringArrays, total: Floats, inner: Floats) -> None:
     """Take the forces of links off those on all coordinates; links pull and push."""
     axes = links.pivot.shape[1]
     for i in range(links.first.size):
@@ -31,7 +31,7 @@ def take_links(links: Ends, total: Floats, inner: Floats) -> None:
 
 @compiled
 def take_droppers(
-    system: System,
+    system: Equations,
     scheme: Scheme,
     motion: Motion,
     slack: Slack,

@@ -1,224 +1,223 @@
-"""A catenary ready for compiled nonlinear runs."""
+"""Nonlinear runs in compiled code: large motions of the assembled line."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.arrays import Records, Wires
+from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.faults import place_of_heads, smaller_steps
 from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
-from catenary_fe.engines.linearised.start import InitialState, Substructure, assemble_pantograph
+from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.nonlinear.arrays import Factor
-from catenary_fe.engines.nonlinear.energy import EnergyRecord
-from catenary_fe.engines.nonlinear.progress import RunRecorder
-from catenary_fe.engines.nonlinear.setup import make_factor, make_stations, make_system
+from catenary_fe.engines.nonlinear.recorder import EnergyRecord, RunRecorder
+from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
 from catenary_fe.engines.nonlinear.steps import advance
-from catenary_fe.engines.recorder import Sizes, load_heads, make_heads, make_records, read_journey
+from catenary_fe.engines.recorder import (
+    InitialState,
+    Sizes,
+    load_pantographs,
+    make_pantographs,
+    make_records,
+    read_history,
+)
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.engines.stopped import RunStopped
-from catenary_fe.layout import AnyPantograph, SolverError
-from catenary_fe.statics import Shape
-
-if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
-    from catenary_fe.fe.nonlinear_model import ContactStart
+from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
+from catenary_fe.fe.contact import PlacedPantograph, place
+from catenary_fe.fe.system import System
+from catenary_fe.layout import SolverError
+from catenary_fe.statics.contact import static_contact
 
 Floats = NDArray[np.float64]
-Progress = Callable[[float], None]
 PARTS = (1, 2, 4, 8, 16)  # of a step, where the run does not converge with the matrix at rest
 
 
-class NonlinearCatenary:
-    """A catenary for any number of compiled nonlinear runs with one time step.
+class NonlinearEngine:
+    """A line for any number of compiled nonlinear runs with one time step.
 
     iterations : of the last run
-
-    Raises SolverError if there is no static equilibrium.
     """
 
     def __init__(
-        self, shape: Shape, time: TimeSettings | None = None, store_wire: float | None = None
+        self, system: System, time: TimeSettings | None = None, store_wire: float | None = None
     ) -> None:
-        from catenary_fe.engines.tension import TensionGauge
-        from catenary_fe.fe.nonlinear_model import nonlinear_model
-
-        self._shape, self._time = shape, time or TimeSettings()
+        self._system, self._time = system, time or TimeSettings()
         self._every = round(store_wire / self._time.step) if store_wire else 0
         self._scheme = make_scheme(self._time)
-        self._gauge = TensionGauge(shape.catenary, shape.mesh, shape.installation.lines)
-        self._model = nonlinear_model(shape.catenary, shape.mesh, shape.installation)
-        self._system = make_system(self._model)
-        self._stations = make_stations(self._model, shape)
-        self._factor = make_factor(self._model, self._scheme, 0 * self._model.system.reference)
+        self._parameters = Parameters(system)
+        self._factor = self._parameters.factor(self._scheme, np.zeros_like(system.reference))
         self.iterations = 0
         self._notes: list[str] = []
 
-    def drive(
+    def run(
         self,
-        pantographs: Sequence[tuple[AnyPantograph, float]],
-        speed: float,
-        positions: Floats,
-        steps: int,
+        case: RunCase,
+        uplifts: Floats,
         progress: Progress | None = None,
         checkpoint: Checkpoint | None = None,
     ) -> History:
-        """Run pantographs, each with its uplift [N], from static contact at constant speed [m/s].
+        """Run pantographs, each with its uplift [N], from static contact at constant speed.
 
         checkpoint : keeps the run's state now and then; the run goes on from what was found in it
 
-        Raises RunStopped with the history until then where steps do not converge, not even much
-        shorter ones, or the user interrupts.
+        Raises SolverError without static contact, RunStopped with the history until then where steps do not
+        converge, not even much shorter ones, or the user interrupts.
         """
-        from catenary_fe.engines.tension import INTERVAL, TensionRecord
-        from catenary_fe.fe.nonlinear_model import contact_start
-
-        shape, h = self._shape, self._time.step
-        begin = contact_start(shape.catenary, shape.mesh, shape.installation, pantographs, positions)
-        start = self._start(pantographs, positions, speed, begin)
-        sizes = _sizes(start.bodies, steps, self._every)
-        heads = make_heads(1, sizes, shape.catenary.contact_wire_height)
-        total = self._model.system.reference + begin.wires
-        records = self._records(sizes, total)
-        load_heads(heads, records, 0, self._scheme, start, steps)
-        state = State.at(start, total, self._system, heads, sizes)
-        block = max(1, round(INTERVAL / h))
-        energy = EnergyRecord(self._model, start.bodies)
-        recorder = RunRecorder(state, records, TensionRecord(self._gauge), energy)
-        recorder.read(self._scheme, begin.wires)
-        self.iterations, self._notes = 0, []
-        done = 0
-        if checkpoint and checkpoint.kept:
-            done, self._notes = recorder.go_on(checkpoint.kept), checkpoint.kept["notes"].tolist()
+        placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
+        moved, placed = static_contact(self._system, placed)
+        steps, interval = case.steps(self._time.step), max(1, round(INTERVAL / self._time.step))
+        run = NonlinearRun(self, moved, placed, case.speed, steps)
+        run.take_up(checkpoint)
         try:
-            while done < steps:
-                count = min(block, steps - done)
-                self._advance(state, records, start, count)
-                done += count
-                if count == block:
-                    recorder.read(self._scheme, state.motion.total - self._model.system.reference)
+            while run.done < steps:
+                run.advance(min(interval, steps - run.done), read=run.done + interval <= steps)
                 if progress:
-                    progress(done / steps)
+                    progress(run.done / steps)
                 if checkpoint:
-                    checkpoint.save_when_due(lambda: recorder.arrays() | {"notes": np.array(self._notes)})
+                    checkpoint.save_when_due(run.arrays)
         except (SolverError, KeyboardInterrupt) as error:
-            history = read_journey(records, heads, 0, start, steps, h, shape)
-            raise RunStopped(recorder.joined(history).until(done), error) from None
-        history = recorder.joined(read_journey(records, heads, 0, start, steps, h, shape))
-        return replace(history, notes=tuple(self._notes))
+            raise RunStopped(run.history().until(run.done), error) from None
+        self.iterations = run.iterations
+        return run.history()
 
-    def _records(self, sizes: Sizes, total: Floats) -> Records:
-        stations = self._stations
-        counts = self._system.droppers.k.size, stations.supports.size, stations.heights.size, 0
-        records = make_records(1, sizes, counts, self._every)
+
+class NonlinearRun:
+    """A run under way.
+
+    moved : [m], shape (all,), displacements at its start
+    pantographs : with their heights and contact forces there
+    speed : [m/s]
+    steps : how many it may take
+    """
+
+    def __init__(
+        self,
+        engine: NonlinearEngine,
+        moved: Floats,
+        pantographs: Sequence[PlacedPantograph],
+        speed: float,
+        steps: int,
+    ) -> None:
+        self._engine, system = engine, engine._system
+        self._parameters, self._steps, self._step = engine._parameters, steps, engine._time.step
+        self._start = _initial_state(system, moved, pantographs, speed)
+        paths = system.contact_paths
+        sizes = Sizes.of([pantographs], len(paths), steps, engine._every)
+        heads, own = make_pantographs(1, sizes, system.contact_wire_height)
+        total = system.reference + moved
+        self.records = self._records(sizes, total, engine._every)
+        load_pantographs(heads, own, self.records, 0, engine._scheme, self._start, steps)
+        self.state = State.at(self._start, total, self._parameters.equations, (heads, own), sizes)
+        energy = EnergyRecord(self._parameters, pantographs)
+        self._recorder = RunRecorder(self.state, self.records, TensionRecord(TensionGauge(system)), energy)
+        self._recorder.read(engine._scheme, moved)
+        self.iterations, self.done = 0, 0
+        self._notes: list[str] = []
+
+    def _records(self, sizes: Sizes, total: Floats, every: int) -> Records:
+        stations, droppers = self._parameters.stations, self._parameters.system.droppers
+        counts = droppers.length.size, stations.supports.size, stations.heights.size, 0
+        records = make_records(1, sizes, counts, every)
         records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
-        if self._every:
+        if every:
             records.wire[0, 0] = total[stations.heights] - stations.rest
         return records
 
-    def _advance(self, state: State, records: Records, start: InitialState, steps: int) -> None:
-        """Take steps; where that fails, again with the matrix of their beginning, in more and more parts."""
+    def take_up(self, checkpoint: Checkpoint | None) -> None:
+        """Go on from what a checkpoint kept, if it kept anything."""
+        if checkpoint and checkpoint.kept:
+            self.done = self._recorder.go_on(checkpoint.kept)
+            self._notes = checkpoint.kept["notes"].tolist()
+
+    def arrays(self) -> dict[str, NDArray[np.generic]]:
+        """What a run needs to go on from here with the same result."""
+        return self._recorder.arrays() | {"notes": np.array(self._notes)}
+
+    def history(self) -> History:
+        """What was recorded so far."""
+        found = read_history(
+            self.records,
+            self.state.heads,
+            0,
+            self._start,
+            self._steps,
+            self._step,
+            self._parameters.system,
+        )
+        return replace(self._recorder.joined(found), notes=tuple(self._notes))
+
+    def advance(self, steps: int, *, read: bool) -> None:
+        """Take steps; where that fails, again with the matrix of their beginning, in more and more parts.
+
+        read : whether tensions and energy are taken at their end
+        """
+        engine, state = self._engine, self.state
         before = state.snapshot()
-        if self._take(state, records, steps, 1, self._scheme, self._factor):
-            return
+        if not self._take(steps, 1, engine._scheme, engine._factor):
+            self._take_again(steps, before)
+        self.done += steps
+        if read:
+            moved = state.motion.total - self._parameters.system.reference
+            self._recorder.read(engine._scheme, moved)
+
+    def _take_again(self, steps: int, before: list[NDArray[np.generic]]) -> None:
+        engine, state = self._engine, self.state
         for parts in PARTS:
             state.restore(before)
-            scheme = make_scheme(replace(self._time, step=self._time.step / parts))
-            factor = make_factor(self._model, scheme, state.motion.total - self._model.system.reference)
-            state.rescale(self._scheme, scheme, start.bodies)
-            done = self._take(state, records, steps, parts, scheme, factor)
-            state.rescale(scheme, self._scheme, start.bodies)
+            scheme = make_scheme(replace(engine._time, step=self._step / parts))
+            moved = state.motion.total - self._parameters.system.reference
+            factor = self._parameters.factor(scheme, moved)
+            state.rescale(engine._scheme, scheme, self._start.pantographs)
+            done = self._take(steps, parts, scheme, factor)
+            state.rescale(scheme, engine._scheme, self._start.pantographs)
             if done:
                 if parts > 1:
-                    self._note(parts, steps, int(state.heads.step[0]) - steps, start)
+                    self._note(parts, steps)
                 return
-        raise SolverError(self._failure(state, start))
+        raise SolverError(self._failure())
 
-    def _note(self, parts: int, steps: int, done: int, start: InitialState) -> None:
+    def _positions(self, time: float) -> list[float]:
+        return [placed.position + self._start.speed * time for placed in self._start.pantographs]
+
+    def _note(self, parts: int, steps: int) -> None:
         """Remember for the result that steps were divided."""
-        from catenary_fe.engines.faults import smaller_steps
-
-        begin = self._time.step * done
-        at = [body.position + start.speed * begin for body in start.bodies]
+        begin, supports = self._step * self.done, self._parameters.system.support_positions
         self._notes.append(
-            smaller_steps(self._shape.catenary, at, begin, parts, 1e3 * steps * self._time.step)
+            smaller_steps(supports, self._positions(begin), begin, parts, 1e3 * steps * self._step)
         )
 
-    def _take(
-        self, state: State, records: Records, steps: int, parts: int, scheme: Scheme, factor: Factor
-    ) -> bool:
+    def _take(self, steps: int, parts: int, scheme: Scheme, factor: Factor) -> bool:
+        state, tolerance = self.state, self._engine._time.tolerance
         flat = Wires(*(array.reshape(-1) for array in state.wires))
         done, iterations = advance(
-            scheme, self._system, self._stations, factor, state.wires, flat, state.motion, state.slack,
-            state.heads, state.work, records, state.energy, steps, parts, self._time.tolerance,
+            scheme, self._parameters.equations, self._parameters.stations, factor, state.wires, flat,
+            state.motion, state.slack, state.heads, state.pantographs, state.work, self.records, state.energy,
+            steps, parts, tolerance,
         )  # fmt: skip
         self.iterations += iterations
         return bool(done)
 
-    def _failure(self, state: State, start: InitialState) -> str:
-        reached = self._time.step * int(state.heads.step[0])
-        at = [body.position + start.speed * reached for body in start.bodies]
-        span = np.searchsorted(self._shape.catenary.support_positions, max(at))
+    def _failure(self) -> str:
+        reached = self._step * int(self.state.pantographs.step[0])
+        where = place_of_heads(self._parameters.system.support_positions, self._positions(reached))
         return (
-            f"run at {3.6 * start.speed:g} km/h: no convergence at t = {reached:.4f} s, the first"
-            f" pantograph at {max(at):.1f} m in span {span}, with steps of {self._time.step:g} s nor with"
-            f" {PARTS[-1]} in the place of each; try a smaller time step, and look at the contact and dropper"
-            " stiffnesses"
+            f"run at {3.6 * self._start.speed:g} km/h: no convergence at t = {reached:.4f} s, {where}, with"
+            f" steps of {self._step:g} s nor with {PARTS[-1]} in the place of each; try a smaller time step,"
+            " and look at the contact and dropper stiffnesses"
         )
 
-    def _start(
-        self,
-        pantographs: Sequence[tuple[AnyPantograph, float]],
-        positions: Floats,
-        speed: float,
-        begin: ContactStart,
-    ) -> InitialState:
-        model, bodies = self._model, []
-        for (pantograph, uplift), position, q, forces in zip(
-            pantographs, positions, begin.heads, begin.forces, strict=True
-        ):
-            body = assemble_pantograph(model, pantograph)
-            touches = tuple(
-                replace(
-                    touch,
-                    force=float(force),
-                    wire_height=self._height(begin, touch.wire, position + touch.ahead),
-                )
-                for touch, force in zip(body.touches, forces, strict=True)
-            )
-            bodies.append(replace(body, uplift=uplift, position=float(position), q=q, touches=touches))
-        free = np.zeros(self._system.force.size)
-        place = model.system.place
-        moves = place >= 0
-        free[place[moves]] = begin.wires[moves]
-        droppers = model.system.droppers
-        tensions = droppers.tension(droppers.span(model.system.reference + begin.wires))
-        return InitialState(free, bodies, tensions, speed)
 
-    def _height(self, begin: ContactStart, wire: int, position: float) -> float:
-        from catenary_fe.fe.cable import hermite
-
-        line = self._model.contacts[wire]
-        axes, up = self._model.system.axes, self._model.system.axes - 1
-        first = int(self._shape.mesh.first_nodes[wire])
-        e = int(np.clip(np.searchsorted(line.x, position, side="right") - 1, 0, line.x.size - 2))
-        xi = (position - line.x[e]) / (line.x[e + 1] - line.x[e])
-        nodes = 2 * axes * (first + np.array([e, e + 1]))
-        moved = begin.wires[nodes[:, None] + [up, up + axes]]
-        values = (line.static[e : e + 2] + moved).ravel()
-        return float(hermite(xi, line.lengths[e]) @ values - self._shape.catenary.contact_wire_height)
-
-
-def _sizes(bodies: Sequence[Substructure], steps: int, every: int) -> Sizes:
-    return Sizes(
-        pantographs=len(bodies),
-        contacts=sum(len(body.touches) for body in bodies),
-        coordinates=max([1, *(len(body.K) for body in bodies)]),
-        steps=steps,
-        shapes=steps // every + 1 if every else 0,
-    )
+def _initial_state(
+    system: System, moved: Floats, pantographs: Sequence[PlacedPantograph], speed: float
+) -> InitialState:
+    free = np.zeros(system.size)
+    moves = system.place >= 0
+    free[system.place[moves]] = moved[moves]
+    tensions = system.droppers.tension(system.droppers.span(system.reference + moved))
+    return InitialState(free, list(pantographs), tensions, speed, len(system.contact_paths))

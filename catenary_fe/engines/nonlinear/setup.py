@@ -1,52 +1,98 @@
-"""From the model's equations to the arrays of a compiled run."""
+"""From the assembled line to the arrays of a compiled run."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.factor import factorise, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.nonlinear.arrays import Ends, Factor, Stations, System
+from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays, Stations
 from catenary_fe.engines.nonlinear.cables import Elements
-from catenary_fe.statics import Shape
-
-if TYPE_CHECKING:
-    from catenary_fe.fe.nonlinear_model import NonlinearModel
-    from catenary_fe.fe.spring import Springs
+from catenary_fe.fe.spring import Springs
+from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 
 
-def make_system(model: NonlinearModel) -> System:
-    """The equations of motion, filled up to a multiple of four coordinates."""
-    more = -model.size % 4
-    line = model.system
-    cables = line.cables
-    idle = np.zeros(more)
-    return System(
-        reference=line.reference,
-        place=line.place,
-        elements=Elements(
-            line.first,
-            cables.length,
-            cables.axial_stiffness,
-            cables.bending_stiffness,
-            1 + cables.rest_strain,
-        ),
-        droppers=_ends(line.droppers),
-        links=_ends(line.arms),
-        ground=np.concatenate([model.ground_stiffness, idle]),
-        force=np.concatenate([model.force, idle]),
-        mass=packed_rows(_padded(model.mass, more, 1.0)),
-        damping=packed_rows(_padded(model.damping, more, 0.0)),
-    )
+@dataclass(frozen=True)
+class Parameters:
+    """What stays the same in all runs on a line; coordinates are filled up to a multiple of four."""
+
+    system: System
+
+    @cached_property
+    def equations(self) -> Equations:
+        """Forces, mass and damping."""
+        line, cables, more = self.system, self.system.cables, -self.system.size % 4
+        idle = np.zeros(more)
+        return Equations(
+            reference=line.reference,
+            place=line.place,
+            elements=Elements(
+                line.first,
+                cables.length,
+                cables.axial_stiffness,
+                cables.bending_stiffness,
+                1 + cables.rest_strain,
+            ),
+            droppers=_arrays(line.droppers),
+            links=_arrays(line.arms),
+            ground=np.concatenate([line.gather(line.ground_stiffness), idle]),
+            force=np.concatenate([line.gather(line.force), idle]),
+            mass=packed_rows(_padded(self.mass, more, 1.0)),
+            damping=packed_rows(_padded(line.free(self._damping), more, 0.0)),
+        )
+
+    @cached_property
+    def mass(self) -> Any:
+        """[kg] over the free coordinates, sparse."""
+        return self.system.free(self.system.mass)
+
+    @cached_property
+    def _damping(self) -> Any:
+        return self.system.damping()
+
+    @cached_property
+    def _taut_damping(self) -> Any:
+        return self.system.free(self._damping + self.system.taut_damping())
+
+    @cached_property
+    def stations(self) -> Stations:
+        """Contact wires and heights."""
+        paths, rest = self.system.contact_paths, self.system.reference[self.system.heights]
+        return Stations(
+            first=np.cumsum([0, *(path.x.size for path in paths)]),
+            x=np.concatenate([path.x for path in paths]),
+            lengths=np.concatenate([[*path.lengths, 1.0] for path in paths]),
+            profile=np.concatenate([path.profile for path in paths]),
+            lateral=np.concatenate([path.lateral for path in paths]),
+            at=np.concatenate([path.dof for path in paths]),
+            supports=np.concatenate([path.index[path.supports, 0] for path in paths]),
+            heights=self.system.heights,
+            rest=rest,
+            rest_supports=np.concatenate([path.profile[path.supports, 0] for path in paths]),
+        )
+
+    def factor(self, scheme: Scheme, moved: Floats) -> Factor:
+        """Factorise the step's matrix where all coordinates are displaced like this."""
+        tangent = self.system.tangent(moved)
+        matrix = self.mass + scheme.g * self._taut_damping + scheme.b * tangent
+        factor = factorise(_padded(matrix, -self.system.size % 4, 1.0))
+        return Factor(
+            packed_rows(factor.L, "lower"),
+            packed_rows(factor.L.T, "upper"),
+            1 / factor.U.diagonal(),
+            np.zeros(factor.shape[0]),
+        )
 
 
-def _ends(springs: Springs) -> Ends:
-    return Ends(
+def _arrays(springs: Springs) -> SpringArrays:
+    return SpringArrays(
         springs.first, springs.last, springs.pivot, springs.length, springs.stiffness, springs.damping
     )
 
@@ -55,39 +101,3 @@ def _padded(matrix: Any, more: int, diagonal: float) -> Any:
     from scipy.sparse import block_diag, identity
 
     return block_diag([matrix, diagonal * identity(more)]).tocsr() if more else matrix
-
-
-def make_stations(model: NonlinearModel, shape: Shape) -> Stations:
-    """Contact wires and heights."""
-    contacts, mesh, axes = model.contacts, shape.mesh, model.system.axes
-    up, width = axes - 1, 2 * axes
-    supports = [
-        width * (first + wire.supports) + up
-        for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False)
-    ]
-    return Stations(
-        first=np.cumsum([0, *(wire.x.size for wire in contacts)]),
-        x=np.concatenate([wire.x for wire in contacts]),
-        lengths=np.concatenate([[*wire.lengths, 1.0] for wire in contacts]),
-        static=np.concatenate([wire.static for wire in contacts]),
-        lateral=np.concatenate([wire.lateral for wire in contacts]),
-        at=np.concatenate([wire.index for wire in contacts]),
-        supports=np.concatenate(supports),
-        heights=width * np.arange(mesh.first_nodes[-1]) + up,
-        rest=np.concatenate([wire.z for wire in shape.wires]),
-        rest_supports=np.concatenate(
-            [wire.z[m.supports] for wire, m in zip(shape.contact_wires, mesh.wires, strict=False)]
-        ),
-    )
-
-
-def make_factor(model: NonlinearModel, scheme: Scheme, moved: Floats) -> Factor:
-    """Factorise the step's matrix where all coordinates are displaced like this."""
-    matrix = model.mass + scheme.g * model.tangent_damping + scheme.b * model.system.tangent(moved)
-    factor = factorise(_padded(matrix, -model.size % 4, 1.0))
-    return Factor(
-        packed_rows(factor.L, "lower"),
-        packed_rows(factor.L.T, "upper"),
-        1 / factor.U.diagonal(),
-        np.zeros(factor.shape[0]),
-    )

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import Heads, Wires, Work
+from catenary_fe.engines.arrays import PantographParameters, PantographState, Wires, Work
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.linearised.start import InitialState, Substructure
-from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Motion, Slack, System
+from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Motion, Slack
 from catenary_fe.engines.nonlinear.forces import ROOM
-from catenary_fe.engines.recorder import Sizes
+from catenary_fe.engines.recorder import InitialState, Sizes
+from catenary_fe.fe.contact import PlacedPantograph
 
 Floats = NDArray[np.float64]
 
@@ -26,35 +26,47 @@ class State:
     wires: Wires
     motion: Motion
     slack: Slack
-    heads: Heads
+    heads: PantographParameters
+    pantographs: PantographState
     work: Work
     energy: EnergyBalance
 
     @classmethod
-    def at(cls, start: InitialState, total: Floats, system: System, heads: Heads, sizes: Sizes) -> State:
+    def at(
+        cls,
+        start: InitialState,
+        total: Floats,
+        equations: Equations,
+        pantographs: tuple[PantographParameters, PantographState],
+        sizes: Sizes,
+    ) -> State:
         """At rest; ``total`` are positions and slopes there, shape (all coordinates,)."""
-        n = system.force.size
-        wires = Wires(start.q[:, None].copy(), *(np.zeros((n, 1)) for _ in range(4)))
+        n = equations.force.size
+        wires = Wires(
+            np.append(start.q, np.zeros(n - start.q.size))[:, None], *(np.zeros((n, 1)) for _ in range(4))
+        )
         motion = Motion(
             np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), total.copy(), np.zeros(total.size)
         )
         work = _work(sizes)
-        work.force[0] = [touch.force for body in start.bodies for touch in body.touches]
-        return cls(wires, motion, _slack(system), heads, work, _energy_balance(start, total, system, sizes))
+        work.force[0] = np.concatenate([placed.forces for placed in start.pantographs])
+        return cls(
+            wires,
+            motion,
+            _slack(equations),
+            *pantographs,
+            work,
+            _energy_balance(start, total, equations, sizes),
+        )
 
     @property
     def kept(self) -> list[NDArray[np.generic]]:
         """Arrays that make up the state; the others are room for work."""
-        heads = self.heads
         return [
             *self.wires[:4],
             self.motion.total,
             self.work.force,
-            heads.q,
-            heads.v,
-            heads.c,
-            heads.x,
-            heads.step,
+            *self.pantographs,
             *self.energy[:-1],
         ]
 
@@ -77,17 +89,17 @@ class State:
         for name, array in self.arrays().items():
             array[...] = arrays[name]
 
-    def rescale(self, old: Scheme, new: Scheme, bodies: Sequence[Substructure]) -> None:
+    def rescale(self, old: Scheme, new: Scheme, pantographs: Sequence[PlacedPantograph]) -> None:
         """Take another time step from here on: the same state in the terms of another scheme."""
         for q, v, x in (
             (self.wires.q, self.wires.v, self.wires.x),
-            (self.heads.q, self.heads.v, self.heads.x),
+            (self.pantographs.q, self.pantographs.v, self.pantographs.x),
         ):
             q += (old.b - new.b) * x
             v += (old.g - new.g) * x
-        for p, body in enumerate(bodies):
-            m = len(body.K)
-            matrix = body.M + new.g * body.D + new.b * body.K
+        for p, placed in enumerate(pantographs):
+            body, m = placed.body, placed.body.size
+            matrix = body.mass + new.g * body.damping + new.b * body.stiffness
             self.heads.inverse[0, p, :m, :m] = np.linalg.inv(matrix)
         self.slack.width[:] = 0  # found with another matrix
 
@@ -107,23 +119,24 @@ def _work(sizes: Sizes) -> Work:
         shape=np.zeros((1, j, 5)),
         rise=np.zeros((1, j, 5)),
         at=np.zeros((1, j, 4), dtype=np.int64),
+        on=np.zeros((1, j), dtype=np.int64),
         head=np.zeros((1, j, m)),
         head_compliance=np.zeros((1, j, m)),
     )
 
 
-def _energy_balance(start: InitialState, total: Floats, system: System, sizes: Sizes) -> EnergyBalance:
+def _energy_balance(start: InitialState, total: Floats, system: Equations, sizes: Sizes) -> EnergyBalance:
     j, masses = sizes.contacts, (sizes.pantographs, sizes.coordinates)
     droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
     span = total[droppers.last[:, None] + axes] - total[droppers.first[:, None] + axes]
     lengths: Floats = np.linalg.norm(span, axis=1)
     heads = np.zeros(masses)
-    for p, body in enumerate(start.bodies):
-        heads[p, : body.q.size] = body.q
-    free = start.q.size
+    for p, placed in enumerate(start.pantographs):
+        heads[p, : placed.heights.size] = placed.heights
+    free = system.force.size
     return EnergyBalance(
         work=np.zeros(2),
-        q=start.q.copy(),
+        q=np.append(start.q, np.zeros(free - start.q.size)),
         drag=np.zeros(free),
         heads=heads,
         head_drag=np.zeros(masses),
@@ -139,7 +152,7 @@ def _energy_balance(start: InitialState, total: Floats, system: System, sizes: S
     )
 
 
-def _slack(system: System) -> Slack:
+def _slack(system: Equations) -> Slack:
     droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
     ends = np.concatenate([droppers.first[:, None] + axes, droppers.last[:, None] + axes], axis=1)
     count = droppers.first.size

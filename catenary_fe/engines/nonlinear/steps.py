@@ -10,7 +10,7 @@ from typing import Any
 
 from catenary_fe.engines import arrays as shared_arrays
 from catenary_fe.engines import contact_solver, generalized_alpha, kernels
-from catenary_fe.engines.arrays import Floats, Heads, Records, Wires, Work
+from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Records, Wires, Work
 from catenary_fe.engines.compiled import compiled, kept, stamp
 from catenary_fe.engines.contact_solver import (
     SWEEPS,
@@ -24,7 +24,7 @@ from catenary_fe.engines.contact_solver import (
 from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.kernels import take_one
 from catenary_fe.engines.nonlinear import arrays, cables, forces
-from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Factor, Motion, Slack, Stations, System
+from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
 from catenary_fe.engines.nonlinear.cables import take_cables
 from catenary_fe.engines.nonlinear.forces import (
     local_compliance,
@@ -44,15 +44,16 @@ def _place(
     scheme: Scheme,
     stations: Stations,
     factor: Factor,
-    heads: Heads,
+    heads: PantographParameters,
+    pantographs: PantographState,
     work: Work,
     total: Floats,
     time: float,
 ) -> None:
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
     axes = total.size // (2 * stations.rest.size)
-    advance_heads(scheme, heads, 0)
-    free_heads(heads, 0)
+    advance_heads(scheme, pantographs, 0)
+    free_heads(heads, pantographs, 0)
     for j in range(heads.owner.shape[1]):
         p = heads.owner[0, j]
         if p < 0:
@@ -62,8 +63,8 @@ def _place(
         place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
         first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
         work.first[0, j], work.width[0, j] = first, width
-        for s in range(heads.x.shape[2]):
-            heads.x[0, p, s] -= work.force[0, j] * work.head_compliance[0, j, s]
+        for s in range(pantographs.x.shape[2]):
+            pantographs.x[0, p, s] -= work.force[0, j] * work.head_compliance[0, j, s]
 
 
 @compiled
@@ -77,7 +78,7 @@ def _sideways(weights: Floats, total: Floats, axes: int, node: int) -> float:
 
 
 @compiled
-def _move(system: System, scheme: Scheme, wires: Wires, motion: Motion) -> None:
+def _move(system: Equations, scheme: Scheme, wires: Wires, motion: Motion) -> None:
     """Positions and velocities that belong to the accelerations."""
     q, v, x = wires.q, wires.v, wires.x
     for i in range(x.shape[0]):
@@ -89,7 +90,7 @@ def _move(system: System, scheme: Scheme, wires: Wires, motion: Motion) -> None:
 
 
 @compiled
-def _contacts(heads: Heads, work: Work, residual: Floats) -> None:
+def _contacts(heads: PantographParameters, work: Work, residual: Floats) -> None:
     for j in range(heads.owner.shape[1]):
         if heads.owner[0, j] >= 0:
             for m in range(4):
@@ -98,14 +99,16 @@ def _contacts(heads: Heads, work: Work, residual: Floats) -> None:
 
 
 @compiled
-def _relax(scheme: Scheme, wires: Wires, heads: Heads, work: Work) -> None:
+def _relax(
+    scheme: Scheme, wires: Wires, heads: PantographParameters, pantographs: PantographState, work: Work
+) -> None:
     """Bring the contact forces to their laws, and the accelerations with them."""
     contacts = heads.owner.shape[1]
     for _ in range(SWEEPS):
         change = 0.0
         for j in range(contacts):
             if heads.owner[0, j] >= 0:
-                change = max(change, update_contact(scheme, wires, heads, work, 0, j))
+                change = max(change, update_contact(scheme, wires, heads, pantographs, work, 0, j))
         if change <= TOLERANCE or contacts == 1:
             break
 
@@ -124,15 +127,16 @@ def _correct(scheme: Scheme, wires: Wires, motion: Motion) -> tuple[float, float
 def _record(
     scheme: Scheme,
     stations: Stations,
-    system: System,
+    system: Equations,
     wires: Wires,
     motion: Motion,
-    heads: Heads,
+    heads: PantographParameters,
+    pantographs: PantographState,
     work: Work,
     to: Records,
 ) -> None:
     """Write down the state at the step's end."""
-    n = heads.step[0] + 1
+    n = pantographs.step[0] + 1
     for j in range(heads.owner.shape[1]):
         if heads.owner[0, j] >= 0:
             to.force[0, j, n] = work.force[0, j]
@@ -142,9 +146,9 @@ def _record(
                 if i >= 0:
                     z += work.shape[0, j, m] * (wires.q[i, 0] + scheme.b * wires.x[i, 0])
             to.height[0, j, n] = z
-    for p in range(heads.x.shape[1]):
-        for s in range(heads.x.shape[2]):
-            to.masses[0, p, s, n] = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+    for p in range(pantographs.x.shape[1]):
+        for s in range(pantographs.x.shape[2]):
+            to.masses[0, p, s, n] = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
     for s in range(stations.supports.size):
         i = stations.supports[s]
         to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
@@ -156,11 +160,12 @@ def _record(
 
 @compiled
 def _add_energy(
-    system: System,
+    system: Equations,
     scheme: Scheme,
     wires: Wires,
     motion: Motion,
-    heads: Heads,
+    heads: PantographParameters,
+    pantographs: PantographState,
     work: Work,
     energy: EnergyBalance,
 ) -> None:
@@ -179,12 +184,19 @@ def _add_energy(
         stretch = energy.new_span[i] - energy.span[i]
         lost += (energy.damper[i] + energy.new_damper[i]) * stretch / 2
         energy.damper[i], energy.span[i] = energy.new_damper[i], energy.new_span[i]
-    energy.work[0] += _contact_work(scheme, heads, work, energy, moved)
-    energy.work[1] += lost + _head_losses(scheme, heads, energy)
+    energy.work[0] += _contact_work(scheme, heads, pantographs, work, energy, moved)
+    energy.work[1] += lost + _head_losses(scheme, heads, pantographs, energy)
 
 
 @compiled
-def _contact_work(scheme: Scheme, heads: Heads, work: Work, energy: EnergyBalance, moved: Floats) -> float:
+def _contact_work(
+    scheme: Scheme,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    work: Work,
+    energy: EnergyBalance,
+    moved: Floats,
+) -> float:
     """Work of the contacts on wires and masses [J]."""
     driven = 0.0
     for j in range(heads.owner.shape[1]):
@@ -198,8 +210,8 @@ def _contact_work(scheme: Scheme, heads: Heads, work: Work, energy: EnergyBalanc
             if work.at[0, j, m] >= 0:
                 now += work.shape[0, j, m] * moved[work.at[0, j, m]]
             energy.at[j, m], energy.shape[j, m] = work.at[0, j, m], work.shape[0, j, m]
-        for s in range(heads.x.shape[2]):
-            rise = heads.q[0, p, s] + scheme.b * heads.x[0, p, s] - energy.heads[p, s]
+        for s in range(pantographs.x.shape[2]):
+            rise = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s] - energy.heads[p, s]
             before -= energy.head[j, s] * rise
             now -= work.head[0, j, s] * rise
             energy.head[j, s] = work.head[0, j, s]
@@ -209,15 +221,17 @@ def _contact_work(scheme: Scheme, heads: Heads, work: Work, energy: EnergyBalanc
 
 
 @compiled
-def _head_losses(scheme: Scheme, heads: Heads, energy: EnergyBalance) -> float:
+def _head_losses(
+    scheme: Scheme, heads: PantographParameters, pantographs: PantographState, energy: EnergyBalance
+) -> float:
     """What the pantographs' dampers took [J]."""
     lost = 0.0
-    for p in range(heads.x.shape[1]):
-        for s in range(heads.x.shape[2]):
+    for p in range(pantographs.x.shape[1]):
+        for s in range(pantographs.x.shape[2]):
             drag = 0.0
-            for r in range(heads.x.shape[2]):
-                drag += heads.D[0, p, s, r] * (heads.v[0, p, r] + scheme.g * heads.x[0, p, r])
-            place = heads.q[0, p, s] + scheme.b * heads.x[0, p, s]
+            for r in range(pantographs.x.shape[2]):
+                drag += heads.D[0, p, s, r] * (pantographs.v[0, p, r] + scheme.g * pantographs.x[0, p, r])
+            place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
             lost += (energy.head_drag[p, s] + drag) * (place - energy.heads[p, s]) / 2
             energy.heads[p, s], energy.head_drag[p, s] = place, drag
     return lost
@@ -229,14 +243,15 @@ def _loop(sources: str) -> Any:
     @kept
     def advance(
         scheme: Scheme,
-        system: System,
+        system: Equations,
         stations: Stations,
         factor: Factor,
         wires: Wires,
         flat: Wires,
         motion: Motion,
         slack: Slack,
-        heads: Heads,
+        heads: PantographParameters,
+        pantographs: PantographState,
         work: Work,
         records: Records,
         energy: EnergyBalance,
@@ -246,17 +261,19 @@ def _loop(sources: str) -> Any:
     ) -> tuple[bool, int]:
         """Take steps, each in so many parts; returns whether all converged, and the number of iterations."""
         iterations, axes = len(sources) * 0, system.droppers.pivot.shape[1]
-        begin = heads.step[0] * parts
+        begin = pantographs.step[0] * parts
         for n in range(begin, begin + steps * parts):
             predict(scheme, 0.0, flat)
-            _place(scheme, stations, factor, heads, work, motion.total, scheme.h * (n + 1))
+            _place(scheme, stations, factor, heads, pantographs, work, motion.total, scheme.h * (n + 1))
             residual, converged, change = motion.residual, False, FAR
             for iteration in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
                 motion.inner[:] = 0.0
                 take_cables(axes, system.elements, motion.total, motion.inner)
-                take_droppers(system, scheme, motion, slack, energy, records.droppers[0], heads.step[0] + 1)
+                take_droppers(
+                    system, scheme, motion, slack, energy, records.droppers[0], pantographs.step[0] + 1
+                )
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
                     residual[i] = system.force[i] - system.ground[i] * motion.q[i]
@@ -271,7 +288,7 @@ def _loop(sources: str) -> Any:
                 for i in range(residual.size):
                     motion.before[i] = flat.x[i]
                     flat.x[i] += residual[i]
-                _relax(scheme, wires, heads, work)
+                _relax(scheme, wires, heads, pantographs, work)
                 earlier = change
                 change, moved = _correct(scheme, wires, motion)
                 if not change < FAR:
@@ -284,12 +301,12 @@ def _loop(sources: str) -> Any:
                     break
             if not converged:
                 return False, iterations
-            _add_energy(system, scheme, wires, motion, heads, work, energy)
+            _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy)
             if (n + 1) % parts == 0:
-                _record(scheme, stations, system, wires, motion, heads, work, records)
-                heads.step[0] += 1
+                _record(scheme, stations, system, wires, motion, heads, pantographs, work, records)
+                pantographs.step[0] += 1
                 for i in range(2):
-                    energy.history[i, heads.step[0]] = energy.work[i]
+                    energy.history[i, pantographs.step[0]] = energy.work[i]
         return True, iterations
 
     return advance

@@ -2,23 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.arrays import Records
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.nonlinear.energy import EnergyRecord
+from catenary_fe.engines.history import History
+from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
+from catenary_fe.engines.tension import TensionRecord
+from catenary_fe.fe.contact import PlacedPantograph
 
-if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.run import History
-    from catenary_fe.engines.tension import TensionRecord
-
+Floats = NDArray[np.float64]
 _BY_STEP = ("force", "height", "masses", "droppers", "supports")
+
+
+class EnergyRecord:
+    """Readings of the kinetic and stored energy, contacts left out: the same as Exudyn's runs record.
+
+    The potential of constant forces (weight, tensions, preloads, uplift) counts as stored.
+    """
+
+    def __init__(self, parameters: Parameters, pantographs: Sequence[PlacedPantograph]) -> None:
+        self._parameters, self._pantographs = parameters, pantographs
+        self._values: list[float] = []
+
+    @property
+    def values(self) -> Floats:
+        """[J], shape (readings,)."""
+        return np.array(self._values)
+
+    def go_on(self, values: Floats) -> None:
+        """Take up readings made before, the first one excepted, which is read again."""
+        self._values = values.tolist()
+
+    def read(self, state: State, scheme: Scheme) -> None:
+        """Take the energy at a step's end."""
+        wires, own, system = state.wires, state.pantographs, self._parameters.system
+        q, v = (a[:, 0] + by * wires.x[:, 0] for a, by in ((wires.q, scheme.b), (wires.v, scheme.g)))
+        q, v = q[: system.size], v[: system.size]
+        total = system.energy(system.spread(q)) + float(v @ (self._parameters.mass @ v) / 2)
+        for p, placed in enumerate(self._pantographs):
+            body, m = placed.body, placed.body.size
+            x: Floats = own.x[0, p, :m]
+            y, w = own.q[0, p, :m] + scheme.b * x, own.v[0, p, :m] + scheme.g * x
+            total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - placed.uplift * body.load @ y)
+        self._values.append(total)
 
 
 @dataclass
@@ -33,7 +66,7 @@ class RunRecorder:
     def read(self, scheme: Scheme, displacements: NDArray[np.float64]) -> None:
         """Take tensions and energy where the run is now; displacements of all coordinates."""
         self.energy.read(self.state, scheme)  # first: what has no time yet is cut where a run is interrupted
-        self.tension.read(scheme.h * int(self.state.heads.step[0]), displacements)
+        self.tension.read(scheme.h * int(self.state.pantographs.step[0]), displacements)
 
     def joined(self, history: History) -> History:
         """The history with what was read on the way."""
@@ -47,7 +80,7 @@ class RunRecorder:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What a run needs to go on from here with the same result."""
-        done = int(self.state.heads.step[0])
+        done = int(self.state.pantographs.step[0])
         found = self.state.arrays() | {
             "tension_times": self.tension.times,
             "tension_changes": self.tension.changes,
@@ -66,7 +99,7 @@ class RunRecorder:
         self.state.go_on(arrays)
         self.tension.go_on(*(arrays[f"tension_{name}"] for name in ("times", "changes", "spans")))
         self.energy.go_on(arrays["energies"])
-        done = int(self.state.heads.step[0])
+        done = int(self.state.pantographs.step[0])
         self.state.energy.history[:, : done + 1] = arrays["energy"]
         for name in _BY_STEP:
             getattr(self.records, name)[..., : done + 1] = arrays[f"record_{name}"]

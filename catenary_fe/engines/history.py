@@ -1,0 +1,100 @@
+"""What a run records, and how a run says that it came to an end before its time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.layout import SolverError
+
+Floats = NDArray[np.float64]
+FEWEST = 50  # steps that are worth keeping; filters need some
+
+
+@dataclass(frozen=True)
+class History:
+    """What a run recorded, at every time step, the initial state included.
+
+    time : [s], shape (times,)
+    position : [m], shape (pantographs, times), along the track
+    contact_force : [N], shape (pantographs, times), of all strips on all contact wires
+    wire_height : [m], shape (pantographs, times), of the contact wire over the head, above its nominal
+        height; of several points of contact, their mean
+    mass_heights : [m], for each pantograph shape (masses, times), above the nominal contact wire height
+    dropper_force : [N], shape (droppers, times)
+    support_height : [m], shape (contact wires, spans + 1, times), of the contact wires at the supports
+    wire_x, wire_z : [m], for each wire its stations (nodes,) and its heights (shape times, nodes), or none
+    wire_times : [s], times of ``wire_z``
+    energy : [J], shape (energy_times,), kinetic and stored, without the contacts', or empty
+    energy_times : [s]
+    driven_work : [J], shape (times,), done on wires and masses by the contacts, or empty: what the moving
+        bases put in over the wire's inclination, less what the contacts store and damp
+    lost_work : [J], shape (times,), lost in the dampers of wires, droppers, supports and pantographs, or none
+    tension_change : shape (wires, tension_times), largest relative change of each wire's tension between two
+        supports since the start, or none
+    tension_span : shape (wires, tension_times), number of the span (from 1) where that is
+    tension_times : [s]
+    notes : what to warn of in the result
+    """
+
+    time: Floats
+    position: Floats
+    contact_force: Floats
+    wire_height: Floats
+    mass_heights: list[Floats]
+    dropper_force: Floats
+    support_height: Floats
+    wire_x: list[Floats]
+    wire_z: list[Floats]
+    wire_times: Floats | None
+    energy: Floats
+    energy_times: Floats
+    driven_work: Floats
+    lost_work: Floats | None = None
+    tension_change: Floats | None = None
+    tension_span: NDArray[np.int64] | None = None
+    tension_times: Floats | None = None
+    notes: tuple[str, ...] = ()
+
+    def until(self, steps: int) -> History | None:
+        """The history of the first steps, or None where those are too few to be of use."""
+        if steps < FEWEST:
+            return None
+        n, shapes = steps + 1, 0
+        if self.wire_times is not None:
+            shapes = int((self.wire_times <= self.time[steps]).sum())
+        energies = int((self.energy_times <= self.time[steps]).sum())
+        tensions = 0 if self.tension_times is None else int((self.tension_times <= self.time[steps]).sum())
+        return replace(
+            self,
+            time=self.time[:n],
+            position=self.position[:, :n],
+            contact_force=self.contact_force[:, :n],
+            wire_height=self.wire_height[:, :n],
+            mass_heights=[heights[:, :n] for heights in self.mass_heights],
+            dropper_force=self.dropper_force[:, :n],
+            support_height=self.support_height[..., :n],
+            wire_z=[z[:shapes] for z in self.wire_z],
+            wire_times=None if self.wire_times is None else self.wire_times[:shapes],
+            energy=self.energy[:energies],
+            energy_times=self.energy_times[:energies],
+            driven_work=self.driven_work[:n],
+            lost_work=None if self.lost_work is None else self.lost_work[:n],
+            tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
+            tension_span=None if self.tension_span is None else self.tension_span[:, :tensions],
+            tension_times=None if self.tension_times is None else self.tension_times[:tensions],
+        )
+
+
+class RunStopped(Exception):  # noqa: N818 the user may have wished it
+    """A drive that was stopped, by a solve that failed or by the user.
+
+    history : what was recorded until then (see :meth:`History.until`), or None where that is next to nothing
+    cause : the error to end with
+    """
+
+    def __init__(self, history: History | None, cause: SolverError | KeyboardInterrupt) -> None:
+        super().__init__(str(cause))
+        self.history, self.cause = history, cause

@@ -1,0 +1,90 @@
+"""Arrays of a linearised line, which its runs share."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers
+
+
+class ComplianceColumns(NamedTuple):
+    """ComplianceColumns of the inverse of the step's matrix where they are not negligible.
+
+    first : shape (columns,), number of the first row kept
+    value : shape (columns, width)
+    """
+
+    first: Integers
+    value: Floats
+
+
+class Operator(NamedTuple):
+    """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
+
+    lower, upper : L and Lᵀ without their diagonals of ones; PackedRows for one slot, CsrRows for eight
+    """
+
+    lower: Any
+    upper: Any
+    inverse: Floats
+    stiffness: Any
+    rest: Any
+    beta: float
+
+
+class SteadyArmBars(NamedTuple):
+    """Steady arms that swing, see :class:`~catenary_fe.fe.reduction.SteadyArmBars`.
+
+    at : shape (links, 2)
+    compliance : columns of the inverse for these coordinates, one link's two after the other
+    """
+
+    at: Integers
+    span: Floats
+    length: Floats
+    k: Floats
+    compliance: ComplianceColumns
+
+
+class StretchCoupling(NamedTuple):
+    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`."""
+
+    at: Integers
+    length: Floats
+    gap: Integers
+
+
+class Line(NamedTuple):
+    """Contact wires, one after the other, and droppers.
+
+    first : shape (contact wires + 1,), where the wires' nodes begin
+    lengths : [m], shape (nodes,), of the elements that begin there
+    profile, lateral : shape (nodes, 2), height and slope at rest, likewise to the left
+    at : shape (nodes, 2), coordinates of height and slope
+    contact_compliance : columns of the inverse for these coordinates, numbered by ``column``
+    rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
+    dropper_compliance : likewise for the droppers
+    links, stretch : steady arms, inclined elements
+    load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.reduction.LinearModel`
+    supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
+    """
+
+    first: Integers
+    x: Floats
+    lengths: Floats
+    profile: Floats
+    lateral: Floats
+    at: Integers
+    column: Integers
+    contact_compliance: ComplianceColumns
+    rows: CsrRows
+    k: Floats
+    d: Floats
+    tension: Floats
+    dropper_compliance: ComplianceColumns
+    links: SteadyArmBars
+    stretch: StretchCoupling
+    load: Floats
+    supports: Integers
+    heights: Integers
+    tensions: Integers

@@ -1,0 +1,91 @@
+"""Contact: the wires that a pantograph can meet, where it meets them, and what it is made of there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.cable import hermite
+from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout.substructure import Strip, Substructure
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class ContactPath:
+    """A contact wire as a pantograph meets it, between its first and last node.
+
+    x : [m], shape (nodes,), stations
+    lengths : [m], shape (nodes - 1,), of the elements
+    profile : [m and 1], shape (nodes, 2), height and vertical slope where it was installed
+    lateral : [m and 1], shape (nodes, 2), likewise to the left
+    index : shape (nodes, 2), numbers of height and vertical slope among all coordinates
+    dof : shape (nodes, 2), likewise among the free ones, or FIXED
+    supports : numbers of the nodes at the supports
+    """
+
+    x: Floats
+    lengths: Floats
+    profile: Floats
+    lateral: Floats
+    index: Integers
+    dof: Integers
+    supports: Integers
+
+    def at(self, position: float) -> tuple[int, Floats]:
+        """Number of the element at a place [m] along the track, and weights of its two heights and slopes."""
+        e = int(np.clip(np.searchsorted(self.x, position, side="right") - 1, 0, self.x.size - 2))
+        share = (position - self.x[e]) / (self.x[e + 1] - self.x[e])
+        return e, hermite(share, self.lengths[e])
+
+
+@dataclass(frozen=True)
+class PlacedPantograph:
+    """A pantograph on the line: what it is made of, its uplift [N] and its position [m] along the track.
+
+    heights : shape (coordinates,), its coordinates at the start of a run
+    forces, wire_heights : [N], [m], shape (contacts,), contact forces there, and heights of the wires above
+        the nominal contact wire height
+    """
+
+    body: Substructure
+    uplift: float
+    position: float
+    heights: Floats = field(default_factory=lambda: np.zeros(0))
+    forces: Floats = field(default_factory=lambda: np.zeros(0))
+    wire_heights: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A collector strip on a contact wire: numbers of pantograph and wire, and where it starts [m]."""
+
+    pantograph: int
+    strip: Strip
+    wire: int
+    position: float
+
+
+def place(
+    pantographs: Sequence[AnyPantograph], uplifts: Floats, positions: Floats, *, spatial: bool
+) -> list[PlacedPantograph]:
+    """Pantographs with their uplifts [N] at positions [m] along the track."""
+    return [
+        PlacedPantograph(pantograph.assemble(spatial=spatial), float(uplift), float(position))
+        for pantograph, uplift, position in zip(pantographs, uplifts, positions, strict=True)
+    ]
+
+
+def contacts_of(pantographs: Sequence[PlacedPantograph], wires: int) -> list[Contact]:
+    """Each strip of each pantograph on each of so many contact wires, in the order of histories."""
+    return [
+        Contact(number, strip, wire, placed.position + strip.ahead)
+        for number, placed in enumerate(pantographs)
+        for strip in placed.body.strips
+        for wire in range(wires)
+    ]
