@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from catenary_fe.results.files import write_text, written_aside
+from catenary_fe.results.files import atomic_write, write_text
 from validation.case import Case
 from validation.cases import CASES
 from validation.check import NO_REFERENCE, Check
@@ -32,7 +32,7 @@ def write_report(checks: Sequence[Check], path: Path | str) -> Path:
     pictures: dict[str, bytes] = getattr(checks, "pictures", {})
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     for name, picture in pictures.items():
-        with written_aside(folder / "pictures" / f"{name}.png") as aside:
+        with atomic_write(folder / "pictures" / f"{name}.png") as aside:
             aside.write_bytes(picture)
     report = folder / "REPORT.md"
     write_text(report, report_text(checks, set(pictures)))

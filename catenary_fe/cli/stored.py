@@ -56,11 +56,7 @@ TOLERANCE = 0.1  # [N] of mean and standard deviation
 @criteria_option("Whose limits judge the run; unset: as in the run's summary, or AC.")
 @quiet_option
 def report(
-    folder: str,
-    output: str | None,
-    filter_kind: FilterKind | None,
-    system: PowerSystem | None,
-    quiet: bool,
+    folder: str, output: str | None, filter_kind: FilterKind | None, system: PowerSystem | None, quiet: bool
 ) -> None:
     """Write a report of the run in FOLDER: one HTML page that needs no other file and no network."""
     from catenary_fe.studies.rerun import shape_of
@@ -205,13 +201,7 @@ def export(
 )
 @quiet_option
 def film(
-    folder: str,
-    output: str,
-    spans: list[int] | None,
-    slowed: float,
-    fps: int,
-    magnified: float,
-    quiet: bool,
+    folder: str, output: str, spans: list[int] | None, slowed: float, fps: int, magnified: float, quiet: bool
 ) -> None:
     """Film the run in FOLDER: wires, droppers (slack ones marked), pantographs, contact force."""
     from catenary_fe.views.film import film as draw

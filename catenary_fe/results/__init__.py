@@ -23,15 +23,13 @@ from catenary_fe.results.criteria import (
     labels,
     missed,
 )
-from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.export import history_tables, write_tables
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import ModeKind, Modes, WireShapes
+from catenary_fe.results.modes import ModalRun, ModeKind, Modes, WireShapes
 from catenary_fe.results.quality import run_checks
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
-from catenary_fe.results.wires import WireHistory
+from catenary_fe.results.wires import Elasticity, WireHistory
 
 __all__ = [
     "Check",

@@ -1,9 +1,9 @@
-"""A check of a run: what was found, what it must be, and what to do if it is not."""
+"""What a run says of itself: its checks, and, where it was stopped, why and when."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from numpy import isfinite
@@ -78,3 +78,25 @@ def checks_in_words(checks: Sequence[Check]) -> str:
     if not failed:
         return f"all {len(checks)} checks passed"
     return f"{len(failed)} of {len(checks)} checks failed: {', '.join(failed)}"
+
+
+@dataclass(frozen=True)
+class Partial:
+    """Why and when a run ended before its time.
+
+    reached_s, planned_s : [s]
+    """
+
+    reason: str
+    reached_s: float
+    planned_s: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON."""
+        return asdict(self)
+
+    def __str__(self) -> str:
+        return (
+            f"PARTIAL run: it ended after {self.reached_s:.2f} of {self.planned_s:.2f} s; spans that were not"
+            f" passed have no figures ({self.reason})"
+        )

@@ -97,10 +97,7 @@ def cell(value: Any, decimals: int | None) -> Any:
 
 
 def write_csv(
-    path: Path,
-    columns: Sequence[str],
-    rows: Iterable[Sequence[Any]],
-    decimals: Mapping[str, int] = DECIMALS,
+    path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]], decimals: Mapping[str, int] = DECIMALS
 ) -> None:
     """Write rows under named columns, a column's unit being the end of its name."""
     digits = [decimals_of(name, decimals) for name in columns]

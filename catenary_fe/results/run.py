@@ -15,11 +15,8 @@ from numpy.typing import NDArray
 from catenary_fe.layout import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
 from catenary_fe.layout.frozen import changed_by_copy
-from catenary_fe.results.check import FAILED, Check
-from catenary_fe.results.checksum import ATTRIBUTE, checksum
-from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.files import atomic_write
-from catenary_fe.results.partial import Partial
+from catenary_fe.results.check import FAILED, Check, Partial
+from catenary_fe.results.files import ATTRIBUTE, atomic_write, checksum
 from catenary_fe.results.quality import run_checks
 from catenary_fe.results.quantities import (
     CHECKS_FAILED,
@@ -30,7 +27,7 @@ from catenary_fe.results.quantities import (
 )
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
-from catenary_fe.results.wires import WireHistory, wire_histories
+from catenary_fe.results.wires import Elasticity, WireHistory, wire_histories
 
 if TYPE_CHECKING:
     import xarray as xr

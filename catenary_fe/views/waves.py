@@ -192,10 +192,7 @@ def _lines(run: Run, start: float, end: float, begin: float, stop: float) -> dic
             meeting = t + 2 * (b - a) / (c + v)
             ahead.append((np.array([a, b, a + v * (meeting - t)]), np.array([t, t + (b - a) / c, meeting])))
         behind.append((np.array([a, start]), np.array([t, t + (a - start) / c])))
-    rays = {
-        f"wave ahead at {3.6 * c:.0f} km/h, reflected at the next support": ahead,
-        "wave behind": behind,
-    }
+    rays = {f"wave ahead at {3.6 * c:.0f} km/h, reflected at the next support": ahead, "wave behind": behind}
     return lines | {name: _joined(parts) for name, parts in rays.items() if parts}
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import catenary_fe as cf
 from catenary_fe import theory
-from catenary_fe.results.files import write_text, written_aside
+from catenary_fe.results.files import atomic_write, write_text
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -111,7 +111,7 @@ def publish(folder: Path | str, script: str, figure: Figure, caption: str, numbe
     """Write the picture, and beside it a JSON file with caption and numbers; returns the numbers."""
     folder, name = Path(folder), Path(script).stem
     folder.mkdir(parents=True, exist_ok=True)
-    with written_aside(folder / f"{name}.png") as aside:
+    with atomic_write(folder / f"{name}.png") as aside:
         figure.savefig(aside, dpi=130, metadata={"Software": None})
     facts = {"caption": caption, "numbers": {key: float(value) for key, value in numbers.items()}}
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.settings import SHORTEST_STEP
 from catenary_fe.layout import AnyPantograph, ElasticPantograph, InputError, Pantograph
 from catenary_fe.layout.arguments import checked, number
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import Modes
+from catenary_fe.results.modes import ModalRun, Modes
 from catenary_fe.statics import Shape
 
 Floats = NDArray[np.float64]

@@ -32,13 +32,7 @@ ASSETS = ("uPlot.min.css", "report.css", "uPlot.iife.min.js", "report.js", "uPlo
 
 
 @styled
-def report_page(
-    run: Run,
-    shape: Shape,
-    *,
-    system: PowerSystem = "AC",
-    filter: FilterKind = "causal",
-) -> str:
+def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: FilterKind = "causal") -> str:
     """HTML of a run's report, complete in itself.
 
     shape : the static shape that the run started from
