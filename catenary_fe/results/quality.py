@@ -1,7 +1,7 @@
 """Quality checks: what a finished run must satisfy before its numbers are trusted.
 
-Each guard is a named check with value and bound, computed from the run's own histories and inputs, so that it
-is there for every run, loaded ones too. A guard that cannot be judged on a run is left out.
+Each is computed from the run's own histories and inputs, so that every run has it, loaded ones too. A check
+that cannot be judged on a run is left out.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _down(value: float) -> str:
 
 
 def _penetration(run: Run) -> Iterator[Check]:
-    """The contact spring stands for a hard contact: 50 kN/m gives by 4 mm under 200 N, by 10 mm under 500 N.
+    """The contact spring stands for a hard contact: at 50 kN/m, 4 mm deep under 200 N, 10 mm under 500 N.
 
     What goes deeper is a spring so soft that it changes the result, or an impact that no head survives.
     """
@@ -220,7 +220,7 @@ def _mesh(run: Run) -> dict[str, float]:
 
 
 def _element_passing(run: Run) -> Iterator[Check]:
-    """A wire gives a little more in an element than at its nodes: passing elements sound a tone.
+    """A wire is a little softer within an element than at its nodes: passing elements sound a tone.
 
     Above the evaluated band it is filtered away. In slow runs it lies inside; of a mesh with several elements
     from dropper to dropper the tone itself is then judged, as part of the filtered force: at 3 % of the mean
