@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from catenary_fe.cli import options
 from catenary_fe.cli.folder import Folder, output_folder
-from catenary_fe.cli.options import (
-    answered,
-    drawn_spans_option,
-    layout_argument,
-    planar_option,
-    read_layout,
-    spans_option,
-)
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
 from catenary_fe.layout import Catenary, load_catenary
 from catenary_fe.layout.catenary_rules import check_lengths
@@ -52,9 +45,9 @@ _SHORT = {
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe info models/layouts/en50318_2002.toml -o info")
-@layout_argument
-@drawn_spans_option
-@answered
+@options.layout
+@options.drawn_spans
+@options.answer()
 def info(layout: str, spans: list[int] | None, answer: Answer) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
@@ -141,22 +134,18 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
-@layout_argument
-@click.option(
-    "--design-lengths",
-    is_flag=True,
-    help="Find the lengths of the design, whatever lengths the layout gives.",
-)
-@drawn_spans_option
-@planar_option
-@answered
+@options.layout
+@options.flag("--design-lengths", "Find the lengths of the design, whatever lengths the layout gives.")
+@options.drawn_spans
+@options.planar
+@options.answer()
 def form(layout: str, design_lengths: bool, spans: list[int] | None, planar: bool, answer: Answer) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height.
     """
-    catenary = read_layout(layout, planar)
+    catenary = options.read_layout(layout, planar)
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
     _check_drawn(catenary, spans, answer.folder)
@@ -183,16 +172,16 @@ def form(layout: str, design_lengths: bool, spans: list[int] | None, planar: boo
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")
-@layout_argument
+@options.layout
 @click.option("--force", "force", type=float, default=100.0, show_default=True, help="Upward force in N.")
-@spans_option
-@planar_option
-@answered
+@options.spans
+@options.planar
+@options.answer()
 def static(layout: str, force: float, spans: list[int] | None, planar: bool, answer: Answer) -> None:
     """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
     from catenary_fe.statics.elasticity import elasticity
 
-    catenary = read_layout(layout, planar)
+    catenary = options.read_layout(layout, planar)
     with static_shape(catenary, answer) as (shape, folder):
         with progress_bar("elasticity", not answer.quiet) as progress:
             curve = elasticity(shape, force=force, spans=spans, progress=progress)
@@ -232,17 +221,17 @@ def elasticity_table(curve: Elasticity, catenary: Catenary) -> list[dict[str, An
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe modes models/layouts/paper_cell.toml --below 20 -o modes")
-@layout_argument
+@options.layout
 @click.option("--count", type=click.IntRange(1), help="How many modes; unset, and with no --below: 40.")
 @click.option("--below", type=float, metavar="HZ", help="All modes up to this frequency.")
-@planar_option
-@answered
+@options.planar
+@options.answer()
 def modes(layout: str, count: int | None, below: float | None, planar: bool, answer: Answer) -> None:
     """Eigenfrequencies and shapes of a LAYOUT about its static state, droppers taut."""
     from catenary_fe.engines.modal.modes import mode_warnings, solve_modes
     from catenary_fe.fe import MeshSettings
 
-    catenary = read_layout(layout, planar)
+    catenary = options.read_layout(layout, planar)
     # the usual mesh leaves 0.1 % in the lowest frequencies, half of it 0.02 %
     with static_shape(catenary, answer, MeshSettings().halved()) as (shape, folder):
         with working("modes", not answer.quiet):

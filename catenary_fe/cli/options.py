@@ -19,52 +19,60 @@ from catenary_fe.results.signal import FilterKind
 Decorator = Callable[[Any], Any]
 _RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
 
-layout_argument = click.argument("layout", type=click.Path())
-folder_argument = click.argument("folder", type=click.Path())
-planar_option = click.option(
-    "--planar", is_flag=True, help="Take the layout's equivalent in the vertical plane."
-)
-json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
-quiet_option = click.option("--quiet", is_flag=True, help="No progress, no table.")
-jobs_option = click.option("--jobs", type=click.IntRange(1), default=2, show_default=True, help="Processes.")
-filter_option = click.option(
-    "--filter",
-    "filter_kind",
-    type=click.Choice(get_args(FilterKind)),
-    help="Low-pass of the contact force; unset: as in the run's summary.",
-)
-time_step_option = click.option(
+layout = click.argument("layout", type=click.Path())
+folder = click.argument("folder", type=click.Path())
+jobs = click.option("--jobs", type=click.IntRange(1), default=2, show_default=True, help="Processes.")
+time_step = click.option(
     "--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms."
 )
-element_option = click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
+element = click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
 
 
-def output_option(what: str, metavar: str = "DIR", **others: Any) -> Decorator:
+def output(what: str, metavar: str = "DIR", **others: Any) -> Decorator:
     """``-o``, which names a folder or a file."""
     return click.option("-o", "--output", type=click.Path(), metavar=metavar, help=what, **others)
 
 
-def criteria_option(what: str) -> Decorator:
+def criteria(what: str) -> Decorator:
     """``--criteria``, which names a power system."""
     systems = click.Choice(get_args(PowerSystem), case_sensitive=False)
     return click.option("--criteria", "system", type=systems, help=what)
 
 
-def method_option(*names: str, help: str | None = None) -> Decorator:
+def low_pass(what: str | None, **others: Any) -> Decorator:
+    """``--filter``."""
+    return click.option(
+        "--filter", "filter_kind", type=click.Choice(get_args(FilterKind)), help=what, **others
+    )
+
+
+def flag(name: str, what: str, parameter: str | None = None) -> Decorator:
+    """An option without a value."""
+    return click.option(name, parameter or name[2:].replace("-", "_"), is_flag=True, help=what)
+
+
+def method(*names: str, help: str | None = None) -> Decorator:
     """``--method``, the first one unless another is chosen."""
     return click.option("--method", type=click.Choice(names), default=names[0], show_default=True, help=help)
 
 
-def answered(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Options on where a command's results go; it takes them as one ``answer``."""
+def answer(what: str = "Folder for results and pictures.", **others: Any) -> Decorator:
+    """Options on where a command's results go; the command takes them as one ``answer``."""
 
-    @wraps(command)
-    def with_answer(output: str | None, as_json: bool, quiet: bool, **others: Any) -> Any:
-        return command(answer=Answer(output, as_json, quiet), **others)
+    def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def with_answer(output: str | None, as_json: bool, quiet: bool, **given: Any) -> Any:
+            return command(answer=Answer(output, as_json, quiet), **given)
 
-    folder = output_option("Folder for results and pictures.")
-    wrapped: Callable[..., Any] = folder(json_option(quiet_option(with_answer)))
-    return wrapped
+        wrapped: Callable[..., Any] = output(what, **others)(as_json(quiet(with_answer)))
+        return wrapped
+
+    return decorated
+
+
+planar = flag("--planar", "Take the layout's equivalent in the vertical plane.")
+as_json = flag("--json", "Print one JSON object and nothing else.", "as_json")
+quiet = flag("--quiet", "No progress, no table.")
 
 
 def _span_numbers(context: click.Context, parameter: click.Parameter, text: str | None) -> list[int] | None:
@@ -87,9 +95,9 @@ def _spans(what: str) -> Decorator:
     return click.option("--spans", callback=_span_numbers, help=what)
 
 
-spans_option = _spans("Spans to evaluate, e.g. 5,6 or 5-17; unset: the layout's.")
-shown_spans_option = _spans("Spans to show, e.g. 5,6 or 5-17; unset: around the evaluated ones.")
-drawn_spans_option = _spans("Spans to draw, e.g. 5,6; unset: the line, and two spans closer.")
+spans = _spans("Spans to evaluate, e.g. 5,6 or 5-17; unset: the layout's.")
+shown_spans = _spans("Spans to show, e.g. 5,6 or 5-17; unset: around the evaluated ones.")
+drawn_spans = _spans("Spans to draw, e.g. 5,6; unset: the line, and two spans closer.")
 
 
 def read_layout(path: str, planar: bool) -> Catenary:

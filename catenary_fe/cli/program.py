@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 import click
 from click.shell_completion import get_completion_class
 
+from catenary_fe.cli import options
 from catenary_fe.cli.folder import writable_folder
-from catenary_fe.cli.options import jobs_option, json_option, output_option, quiet_option
 from catenary_fe.cli.terminal import print_json, print_table, progress_bar
 from catenary_fe.layout import InputError, counted
 from catenary_fe.results.files import write_text
@@ -38,9 +38,9 @@ Examples:
 @click.command(epilog="\b\nExample:\n  catenary-fe validate --quick")
 @click.argument("cases", nargs=-1)
 @click.option("--quick", is_flag=True, help="Only what takes seconds.")
-@jobs_option
-@json_option
-@quiet_option
+@options.jobs
+@options.as_json
+@options.quiet
 def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quiet: bool) -> int:
     """Compare computed with reference values; exit code 1 when a case misses."""
     folder = _of_checkout("validation/__init__.py", "the validation suite is")
@@ -65,8 +65,8 @@ def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quie
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe selfcheck")
-@json_option
-@quiet_option
+@options.as_json
+@options.quiet
 def selfcheck(as_json: bool, quiet: bool) -> int:
     """Compute known answers, in half a minute; exit code 1 when this installation misses one."""
     from catenary_fe.studies.selfcheck import selfcheck as known_answers
@@ -121,10 +121,10 @@ def completion(context: click.Context, shell: str) -> None:
 
 @click.command(epilog=PAPER_EPILOG)
 @click.argument("figures", nargs=-1, metavar="[FIGURE]...")
-@output_option("Folder for all pictures.", "PATH", default="out/paper", show_default=True)
-@jobs_option
-@json_option
-@quiet_option
+@options.output("Folder for all pictures.", "PATH", default="out/paper", show_default=True)
+@options.jobs
+@options.as_json
+@options.quiet
 def paper(figures: tuple[str, ...], output: str, jobs: int, as_json: bool, quiet: bool) -> int:
     """Draw the figures of the paper from live computations, all of them or some, and an index page.
 

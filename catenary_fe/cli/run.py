@@ -10,22 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from catenary_fe.cli import options
 from catenary_fe.cli.design import write_schedules
-from catenary_fe.cli.folder import PARTIAL, Folder, output_folder, read_record
-from catenary_fe.cli.inputs import InputFiles
-from catenary_fe.cli.options import (
-    ManyValues,
-    answered,
-    criteria_option,
-    element_option,
-    layout_argument,
-    method_option,
-    pantograph_names,
-    planar_option,
-    read_layout,
-    spans_option,
-    time_step_option,
-)
+from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, read_record
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
 from catenary_fe.cli.verdicts import evaluated, exit_code, print_criteria, with_elasticity
 from catenary_fe.layout import (
@@ -58,19 +45,19 @@ in DIR/partial."""
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
-@click.command(cls=ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
-@layout_argument
+@click.command(cls=options.ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
+@options.layout
 @click.option(
     "--pantograph",
     "names",
     multiple=True,
     required=True,
-    shell_complete=pantograph_names,
+    shell_complete=options.pantograph_names,
     help="Name in the library, or TOML file.",
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
-@method_option(
+@options.method(
     "nonlinear", "linearised", "exudyn", help="Linearised: about the static state, many times faster."
 )
 @click.option(
@@ -78,36 +65,23 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     type=click.Path(dir_okay=False),
     help="File that keeps the state of a nonlinear run: started again after a kill, the run goes on from it.",
 )
-@time_step_option
-@element_option
-@click.option(
-    "--filter",
-    "filter_kind",
-    type=click.Choice(["causal", "zero-phase"]),
-    default="causal",
-    show_default=True,
-)
-@spans_option
-@planar_option
+@options.time_step
+@options.element
+@options.low_pass(None, default="causal", show_default=True)
+@options.spans
+@options.planar
 @click.option(
     "--store-wire-ms",
     type=click.FloatRange(0.0),
     help="Interval of the stored shapes of the whole wires, rounded to time steps, 0 for none; unset: 10 with"
     " -o, which reports and films need.",
 )
-@click.option(
-    "--energy",
-    is_flag=True,
-    help="Record energy and check its balance with the method exudyn, too: a quarter slower.",
+@options.flag(
+    "--energy", "Record energy and check its balance with the method exudyn, too: a quarter slower."
 )
-@click.option(
-    "--elasticity",
-    "with_curve",
-    is_flag=True,
-    help="Compute the elasticity of the evaluated spans, too, and keep it with the run.",
-)
-@criteria_option("Judge the run by the limits of this system; exit code 1 on a miss.")
-@answered
+@options.flag("--elasticity", "Compute the elasticity of the evaluated spans, too, and keep it with the run.")
+@options.criteria("Judge the run by the limits of this system; exit code 1 on a miss.")
+@options.answer()
 def run(
     layout: str,
     names: tuple[str, ...],
@@ -122,7 +96,7 @@ def run(
     store_wire_ms: float | None,
     energy: bool,
     planar: bool,
-    with_curve: bool,
+    elasticity: bool,
     system: PowerSystem | None,
     answer: Answer,
 ) -> int:
@@ -131,7 +105,7 @@ def run(
     from catenary_fe.fe import MeshSettings
     from catenary_fe.studies import simulate
 
-    catenary, output = read_layout(layout, planar), answer.folder
+    catenary, output = options.read_layout(layout, planar), answer.folder
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
@@ -143,8 +117,8 @@ def run(
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
     with static_shape(catenary, answer, mesh) as (shape, folder):
-        options = _options(click.get_current_context())
-        kept = partial_kept(output, shape, files, options, filter_kind)
+        given = _options(click.get_current_context())
+        kept = partial_kept(output, shape, files, given, filter_kind)
         with progress_bar(f"run at {speed_kmh:g} km/h", not answer.quiet) as progress, kept:
             result = simulate(
                 shape,
@@ -158,11 +132,11 @@ def run(
                 energy=energy,
                 checkpoint=checkpoint,
             )
-        if with_curve:
+        if elasticity:
             result = with_elasticity(result, shape, answer.quiet)
         summary, rows = evaluated(result, filter_kind, system)
         if folder:
-            files.keep(folder, result, options)
+            files.keep(folder, result, given)
             with working("pictures", not answer.quiet):
                 write_run(folder, shape, result, summary, rows)
             forget_partial(folder)

@@ -6,22 +6,12 @@ import json
 import shutil
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from catenary_fe.cli.folder import folder_of, output_folder, run_in, save_picture
-from catenary_fe.cli.inputs import changed_files
-from catenary_fe.cli.options import (
-    answered,
-    criteria_option,
-    filter_option,
-    folder_argument,
-    json_option,
-    output_option,
-    quiet_option,
-    shown_spans_option,
-)
+from catenary_fe.cli import options
+from catenary_fe.cli.folder import changed_files, folder_of, output_folder, run_in, save_picture
 from catenary_fe.cli.run import write_run
 from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import (
@@ -50,11 +40,11 @@ TOLERANCE = 0.1  # [N] of mean and standard deviation
 @click.command(
     epilog="\b\nExamples:\n  catenary-fe report run300\n  catenary-fe report run300 -o to_send.html"
 )
-@folder_argument
-@output_option("Name of the page; unset: FOLDER/report.html.", "FILE")
-@filter_option
-@criteria_option("Whose limits judge the run; unset: as in the run's summary, or AC.")
-@quiet_option
+@options.folder
+@options.output("Name of the page; unset: FOLDER/report.html.", "FILE")
+@options.low_pass("Low-pass of the contact force; unset: as in the run's summary.")
+@options.criteria("Whose limits judge the run; unset: as in the run's summary, or AC.")
+@options.quiet
 def report(
     folder: str, output: str | None, filter_kind: FilterKind | None, system: PowerSystem | None, quiet: bool
 ) -> None:
@@ -82,13 +72,10 @@ def report(
     "  catenary-fe compare before after -o comparison"
 )
 @click.argument("folders", nargs=-1, required=True, type=click.Path(), metavar="FOLDER FOLDER...")
-@click.option(
-    "--filter",
-    "filter_kind",
-    type=click.Choice(get_args(FilterKind)),
-    help="Low-pass of the contact forces; unset: as in the runs' summaries, causal where they differ.",
+@options.low_pass(
+    "Low-pass of the contact forces; unset: as in the runs' summaries, causal where they differ."
 )
-@answered
+@options.answer()
 def compare(folders: tuple[str, ...], filter_kind: FilterKind | None, answer: Answer) -> None:
     """Put the runs in two or more FOLDERs side by side: what went in differently, and what came out.
 
@@ -150,12 +137,12 @@ def _labels(folders: tuple[str, ...]) -> list[str]:
 @click.command(
     epilog="\b\nExamples:\n  catenary-fe export run300\n  catenary-fe export run300 --every-ms 5 -o tables"
 )
-@folder_argument
-@output_option("Folder for the files; unset: FOLDER/csv.")
+@options.folder
+@options.output("Folder for the files; unset: FOLDER/csv.")
 @click.option("--every-ms", type=float, help="Interval of the rows in ms, rounded to time steps; unset: one.")
-@filter_option
-@json_option
-@quiet_option
+@options.low_pass("Low-pass of the contact force; unset: as in the run's summary.")
+@options.as_json
+@options.quiet
 def export(
     folder: str,
     output: str | None,
@@ -191,15 +178,15 @@ def export(
     epilog="\b\nExamples:\n  catenary-fe film run300 -o run300.gif\n"
     "  catenary-fe film run300 --spans 5 --slowed 10 -o span5.mp4"
 )
-@folder_argument
-@output_option("Name with .gif or .mp4.", "FILE", required=True)
-@shown_spans_option
+@options.folder
+@options.output("Name with .gif or .mp4.", "FILE", required=True)
+@options.shown_spans
 @click.option("--slowed", type=float, default=4.0, show_default=True, help="Times slower than real time.")
 @click.option("--fps", type=int, default=20, show_default=True, help="Frames a second, at most 50.")
 @click.option(
     "--magnified", type=float, default=5.0, show_default=True, help="Times that motion is drawn larger."
 )
-@quiet_option
+@options.quiet
 def film(
     folder: str, output: str, spans: list[int] | None, slowed: float, fps: int, magnified: float, quiet: bool
 ) -> None:
@@ -225,14 +212,14 @@ def film(
     epilog="\b\nExamples:\n  catenary-fe waves run300 -o waves.png\n"
     "  catenary-fe waves run300 --quantity deflection --spans 4,5,6 -o uplift.png"
 )
-@folder_argument
-@output_option("Name with .png, .svg or .pdf.", "FILE", required=True)
+@options.folder
+@options.output("Name with .png, .svg or .pdf.", "FILE", required=True)
 @click.option(
     "--quantity", type=click.Choice(["velocity", "deflection"]), default="velocity", show_default=True
 )
 @click.option("--wire", default="contact wire", show_default=True, help="Which of the stored wires.")
-@shown_spans_option
-@quiet_option
+@options.shown_spans
+@options.quiet
 def waves(folder: str, output: str, quantity: Any, wire: str, spans: list[int] | None, quiet: bool) -> None:
     """Draw the waves of the run in FOLDER over place and time, with the rays of the wave speed."""
     from catenary_fe.views import plot_run_waves
@@ -248,9 +235,9 @@ def waves(folder: str, output: str, quantity: Any, wire: str, spans: list[int] |
     "  catenary-fe view run300 -o model.png"
 )
 @click.argument("layout_or_folder", type=click.Path())
-@shown_spans_option
-@output_option("Save the picture and close, as .png.", "FILE")
-@quiet_option
+@options.shown_spans
+@options.output("Save the picture and close, as .png.", "FILE")
+@options.quiet
 def view(layout_or_folder: str, spans: list[int] | None, output: str | None, quiet: bool) -> None:
     """Open the model of a LAYOUT, or of a run's FOLDER, in Exudyn's viewer; needs a screen."""
     from catenary_fe.engines.exudyn.viewer import require_screen, view_model
@@ -285,8 +272,8 @@ def _shape_of(layout_or_folder: str) -> Shape:
 
 
 @click.command(epilog="\b\nExamples:\n  catenary-fe rerun run300\n  catenary-fe rerun run300 -o run300_again")
-@folder_argument
-@answered
+@options.folder
+@options.answer()
 def rerun(folder: str, answer: Answer) -> int:
     """Repeat the run in FOLDER from what it recorded, and say whether the result is the same.
 

@@ -12,21 +12,10 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
+from catenary_fe.cli import options
 from catenary_fe.cli.folder import output_folder
-from catenary_fe.cli.options import (
-    ManyValues,
-    criteria_option,
-    element_option,
-    json_option,
-    layout_argument,
-    method_option,
-    output_option,
-    quiet_option,
-    spans_option,
-    time_step_option,
-)
 from catenary_fe.cli.surroundings import readable
-from catenary_fe.cli.terminal import print_json, print_table, progress_bar, say
+from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_bar, say
 from catenary_fe.cli.verdicts import Verdict, in_words, remarks, sweep_exit_code, verdict_of, warn_once
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
 from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
@@ -57,9 +46,9 @@ _FIGURES = (
 
 
 @click.command(
-    cls=ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
+    cls=options.ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
 )
-@layout_argument
+@options.layout
 @click.option("--speed-kmh", "speeds", multiple=True, required=True, help="Speeds, or first:last:step.")
 @click.option(
     "--pantograph", "names", multiple=True, required=True, help="Names in the library, or TOML files."
@@ -69,17 +58,15 @@ _FIGURES = (
     help="Positions in m at the start: each case runs one pantograph at each.",
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
-@method_option("linearised", "nonlinear", "exudyn")
-@time_step_option
-@element_option
-@spans_option
-@criteria_option("Judge the cases by the limits of this system; exit code 1 where one misses any.")
+@options.method("linearised", "nonlinear", "exudyn")
+@options.time_step
+@options.element
+@options.spans
+@options.criteria("Judge the cases by the limits of this system; exit code 1 where one misses any.")
 @click.option("--jobs", type=click.IntRange(1), help="Number of processes; unset: one a core.")
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
-@click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
-@output_option("Folder for table and pictures.", required=True)
-@json_option
-@quiet_option
+@options.flag("--retry-failed", "Run failed cases of an earlier start again.")
+@options.answer("Folder for table and pictures.", required=True)
 def sweep(
     layout: str,
     speeds: tuple[str, ...],
@@ -94,15 +81,14 @@ def sweep(
     jobs: int | None,
     scheduler: str | None,
     retry_failed: bool,
-    output: str,
-    as_json: bool,
-    quiet: bool,
+    answer: Answer,
 ) -> int:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
     from catenary_fe.studies.sweep import LOST, SweepSettings, run_sweep
 
+    output = str(answer.folder)
     if jobs and scheduler:
         raise click.UsageError("--jobs and --scheduler: the cluster has its own processes; give one of them")
     axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
@@ -116,7 +102,7 @@ def sweep(
         time=TimeSettings(step=time_step_ms / 1e3),
     )
     cases = _cases(layout, axes, positions, spans)
-    with progress_bar(counted(count, "case"), not quiet) as progress, _kept(output):
+    with progress_bar(counted(count, "case"), not answer.quiet) as progress, _kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -129,16 +115,16 @@ def sweep(
     verdicts = [verdict_of(record, case, system) for record, case in zip(records, cases, strict=True)]
     rows = [row for both in zip(records, verdicts, strict=True) for row in _rows(*both, system)]
     _write(output, rows, axes, verdicts)
-    if as_json:
+    if answer.as_json:
         print_json(rows)
-    elif not quiet:
+    elif not answer.quiet:
         _print(rows, axes)
         for words in in_words(verdicts, system):
             click.echo(words)
         click.echo(f"table and pictures in {output}")
-    if not quiet:
+    if not answer.quiet:
         _say_lengths(cases)
-    if not as_json:
+    if not answer.as_json:
         warn_once(verdicts)
     failed = [record for record in records if "error" in record]
     for record in failed:

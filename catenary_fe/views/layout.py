@@ -11,18 +11,7 @@ from matplotlib.axes import Axes
 from catenary_fe.layout import AnyPantograph, Catenary, Panhead
 from catenary_fe.layout.arguments import checked, number
 from catenary_fe.statics import Shape
-from catenary_fe.views import style
-from catenary_fe.views.stretch import (
-    Line,
-    Stretch,
-    draw_line,
-    draw_lines,
-    evaluated_pair,
-    frame,
-    hanging_lines,
-    sketched_lines,
-    upper_wires,
-)
+from catenary_fe.views import stretch, style
 
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
 _CURVE = "#7b4fa3"
@@ -49,25 +38,25 @@ def plot_layout(
     Raises InputError for spans that the line does not have.
     """
 
-    def draw(ax: Axes, part: Stretch) -> None:
+    def draw(ax: Axes, part: stretch.Stretch) -> None:
         _draw(ax, part, shape, to_scale)
 
     if to_scale and not spans:
-        spans = evaluated_pair(catenary).spans
-    return draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
+        spans = stretch.evaluated_pair(catenary).spans
+    return stretch.draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
 
 
-def _draw(ax: Axes, part: Stretch, shape: Shape | None, to_scale: bool) -> None:
+def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) -> None:
     catenary = part.catenary
-    lines = hanging_lines(shape, part) if shape else sketched_lines(catenary, part)
+    lines = stretch.hanging_lines(shape, part) if shape else stretch.sketched_lines(catenary, part)
     contact = [line for line in lines if line.name == "contact wire"]
     low = min(float(line.z.min()) for line in contact) - _BELOW
     top = float(catenary.messenger_support_heights[part.supports].max())
     high = top + (0.1 if to_scale else 0.32) * (top - low)
     ax.set_ylim(low, high)
-    frame(ax, part)
-    draw_lines(ax, lines, "z")
-    _draw_droppers(ax, part, lines, upper_wires(catenary, shape))
+    stretch.frame(ax, part)
+    stretch.draw_lines(ax, lines, "z")
+    _draw_droppers(ax, part, lines, stretch.upper_wires(catenary, shape))
     _draw_supports(ax, part, lines, low)
     scale = "to scale"
     if to_scale:
@@ -80,7 +69,7 @@ def _draw(ax: Axes, part: Stretch, shape: Shape | None, to_scale: bool) -> None:
     style.finish(ax, style.ALONG, "height above rail (m)", f"{catenary.name}: layout{part.where}, {scale}")
 
 
-def _draw_droppers(ax: Axes, part: Stretch, lines: list[Line], upper: np.ndarray) -> None:
+def _draw_droppers(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], upper: np.ndarray) -> None:
     catenary = part.catenary
     shown = np.flatnonzero(part.inside(catenary.dropper_positions))
     x = catenary.dropper_positions[shown]
@@ -89,7 +78,7 @@ def _draw_droppers(ax: Axes, part: Stretch, lines: list[Line], upper: np.ndarray
     ax.vlines(x, below, above, color=style.DROPPER, linewidth=0.9 if part.is_close else 0.6, label="dropper")
 
 
-def _draw_supports(ax: Axes, part: Stretch, lines: list[Line], low: float) -> None:
+def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     """A line up to each messenger wire's support with the support's number, and the steady arms."""
     catenary, x = part.catenary, part.support_x
     tops = catenary.messenger_support_heights[part.supports]
@@ -114,7 +103,7 @@ def _draw_supports(ax: Axes, part: Stretch, lines: list[Line], low: float) -> No
     style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
 
 
-def _draw_dimensions(ax: Axes, part: Stretch, lines: list[Line], low: float) -> None:
+def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     x, spans = part.support_x, [part.catenary.spans[n - 1] for n in part.spans]
     middles = (x[:-1] + x[1:]) / 2
     if not part.is_close:
@@ -160,11 +149,11 @@ def plot_plan(
     """
     number("head_width", head_width, "m", above=0.0)
 
-    def draw(ax: Axes, part: Stretch) -> None:
+    def draw(ax: Axes, part: stretch.Stretch) -> None:
         _draw_plan(ax, part, shape, head_width)
 
     curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if span.curve_radius]
-    return draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), curved)
+    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), curved)
 
 
 def head_width(pantographs: Iterable[AnyPantograph]) -> float:
@@ -173,12 +162,12 @@ def head_width(pantographs: Iterable[AnyPantograph]) -> float:
     return next(heads, Panhead()).width
 
 
-def _draw_plan(ax: Axes, part: Stretch, shape: Shape, width: float) -> None:
+def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> None:
     catenary = part.catenary
-    frame(ax, part)
+    stretch.frame(ax, part)
     ax.axhspan(-width / 2, width / 2, color=_HEAD, alpha=0.7, zorder=0.5, label=f"panhead, {width:g} m")
     ax.axhline(0.0, color=style.SUPPORT, linewidth=0.7, linestyle="-.", label="track centre")
-    draw_lines(ax, hanging_lines(shape, part), "y")
+    stretch.draw_lines(ax, stretch.hanging_lines(shape, part), "y")
     _droppers_from_above(ax, part, shape)
     _draw_arms(ax, part, shape)
     style.mark_supports(ax, part.support_x, label=False)
@@ -191,14 +180,14 @@ def _draw_plan(ax: Axes, part: Stretch, shape: Shape, width: float) -> None:
     style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
 
 
-def _curves(part: Stretch) -> list[tuple[float, int, int]]:
+def _curves(part: stretch.Stretch) -> list[tuple[float, int, int]]:
     """Radius, first and last span of each run of spans that curve alike."""
     groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curve_radius or 0.0)
     found = [(radius, list(numbers)) for radius, numbers in groups]
     return [(radius, numbers[0], numbers[-1]) for radius, numbers in found if radius]
 
 
-def _curve(part: Stretch) -> str:
+def _curve(part: stretch.Stretch) -> str:
     curves = _curves(part)
     if not curves:
         return "straight track"
@@ -207,13 +196,13 @@ def _curve(part: Stretch) -> str:
         return f"{len(curves)} curves, radii {min(radii):g} to {max(radii):g} m"
     said = []
     for radius, first, last in curves:
-        where = Stretch(part.catenary, first, last)
+        where = stretch.Stretch(part.catenary, first, last)
         here = "" if where == part else f", in {where}"
         said.append(f"curve to the {'left' if radius > 0 else 'right'}, radius {abs(radius):g} m{here}")
     return " and ".join(said)
 
 
-def _draw_curves(ax: Axes, part: Stretch) -> None:
+def _draw_curves(ax: Axes, part: stretch.Stretch) -> None:
     """A bar along the bottom under each curve."""
     supports, axes = part.catenary.support_positions, ax.get_xaxis_transform()
     for i, (radius, first, last) in enumerate(_curves(part)):
@@ -229,7 +218,7 @@ def _draw_curves(ax: Axes, part: Stretch) -> None:
             )
 
 
-def _droppers_from_above(ax: Axes, part: Stretch, shape: Shape) -> None:
+def _droppers_from_above(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
     mesh = shape.mesh
     points = np.concatenate([np.column_stack([w.x, w.y]) for w in shape.wires])
     shown = part.inside(shape.catenary.dropper_positions)
@@ -239,7 +228,7 @@ def _droppers_from_above(ax: Axes, part: Stretch, shape: Shape) -> None:
     ax.plot(x, y, color=style.DROPPER, linewidth=0.7)
 
 
-def _draw_arms(ax: Axes, part: Stretch, shape: Shape) -> None:
+def _draw_arms(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
     """Arms as long as they are, seen from above, with the force that they hold sideways."""
     forces, catenary = shape.installation.arm_forces, shape.catenary
     ends: list[tuple[float, float]] = []
