@@ -65,7 +65,7 @@ def info(layout: str, spans: list[int] | None, answer: Answer) -> None:
 
 
 def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None) -> None:
-    """Before the work: whether there are these spans to draw, and somewhere to draw them."""
+    """Check before the work starts that the spans to draw exist, and that there is an output folder."""
     if spans is None:
         return
     if output is None:
@@ -268,7 +268,7 @@ def write_schedules(folder: Folder, shape: Shape) -> None:
 
 
 def print_schedules(shape: Shape) -> None:
-    """Print what matters most of both tables."""
+    """Print the main columns of both tables."""
     name, several = shape.catenary.name, len(shape.contact_wires) > 1
     supports = [key for key in _SUPPORTS if not (several and key == "contact_wire_height_m")]  # no room
     _print(f"{name}: dropper schedule", [row.as_dict() for row in shape.dropper_schedule()], _DROPPERS)

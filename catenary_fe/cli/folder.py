@@ -1,4 +1,4 @@
-"""Folders of results: checked before the work, filled after it, whole or not at all; how a run is repeated."""
+"""Folders of results: checked before the work, filled after it, whole or not at all; what repeats a run."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class Folder:
         self.kept = False
 
     def keep(self) -> None:
-        """Move what is written so far into place: what fails later does not take it along."""
+        """Move what is written so far into place, so that a later failure does not remove it."""
         replace_all(self.path, self.path.parent)
         self.kept = True
 
     def forget(self, *patterns: str) -> None:
-        """Remove what commands made of the folder's results before, now that other ones were kept."""
+        """Remove files that earlier commands derived from results which have been replaced."""
         for file in [file for pattern in patterns for file in self.path.parent.glob(pattern)]:
             file.unlink(missing_ok=True)
 
@@ -173,7 +173,7 @@ def read_record(path: Path) -> dict[str, Any]:
 
 
 def _unmake(folders: Sequence[Path]) -> None:
-    """Remove folders that were made for nothing, inner ones first, unless others have put something there."""
+    """Remove folders that were created in vain, innermost first, unless something is in them."""
     with suppress(OSError):
         for folder in folders:
             folder.rmdir()
@@ -217,7 +217,7 @@ class InputFiles:
         )
 
     def keep(self, folder: Folder, run: Run, options: Sequence[str]) -> None:
-        """Write the files, the command that repeats the run from them, and all inputs as understood.
+        """Write the files, the command that repeats the run from them, and all inputs as interpreted.
 
         options : of the command, besides layout and pantographs
         """
@@ -235,7 +235,7 @@ class InputFiles:
 
 
 def changed_files(folder: Path) -> list[str]:
-    """Names of the kept files that are not as the run found them; none where no record of them is left.
+    """Names of the kept files that are not as the run found them; none without a record of them.
 
     Raises InputError where the record is damaged.
     """

@@ -117,6 +117,6 @@ def entry() -> None:
 
 
 def _stop(number: int, _frame: Any) -> None:
-    """Leave by the same door as after Ctrl-C: what is half done is put away, what is kept is kept."""
+    """Stop as after Ctrl-C: unfinished files are removed, finished ones kept."""
     signal.signal(number, signal.SIG_IGN)  # once is enough
     raise RunInterrupted(number)

@@ -176,7 +176,7 @@ def _options(context: click.Context) -> list[str]:
 def partial_kept(
     output: str | None, shape: Shape, files: InputFiles, options: Sequence[str], filter_kind: Any
 ) -> Iterator[None]:
-    """Where a run is stopped, write what there is of it into a folder inside the output folder."""
+    """Where a run is stopped, write its results so far into a folder inside the output folder."""
     try:
         yield
     except (SolverError, RunInterrupted) as error:
@@ -195,13 +195,13 @@ def partial_kept(
 
 
 def forget_partial(folder: Folder) -> None:
-    """Remove what an earlier run that was stopped left in the folder: now there is a whole one."""
+    """Remove what an earlier run that was stopped left in the folder: it is complete now."""
     place = folder.path.parent / PARTIAL
     if (place / "summary.json").is_file() and "partial" in read_record(place / "summary.json"):
         shutil.rmtree(place, ignore_errors=True)
 
 
-_OF_A_RUN = (  # of another one they would say what is not so
+_OF_A_RUN = (  # they would describe another run
     "criteria.png", "energy.png", "plan.png", "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip

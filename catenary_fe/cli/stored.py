@@ -118,7 +118,7 @@ def compare(folders: tuple[str, ...], filter_kind: FilterKind | None, answer: An
 def common_filter(
     folders: tuple[str, ...], labels: list[str], chosen: FilterKind | None
 ) -> tuple[FilterKind, list[str]]:
-    """The filter of all figures, and what to warn of: runs whose own figures are another filter's."""
+    """The filter of all figures, and warnings of runs whose own summary used another filter."""
     kinds = [kept_evaluation(folder)[0] for folder in folders]
     kind: FilterKind = chosen or (kinds[0] if len(set(kinds)) == 1 else "causal")
     return kind, [
@@ -318,7 +318,7 @@ def rerun(folder: str, answer: Answer) -> int:
 
 
 def _changes_since(run: Run, folder: Path) -> list[str]:
-    """What is not as it was when the run was computed."""
+    """Versions and files that changed since the run was computed."""
     found = []
     for name, before in json.loads(run.data.attrs["versions"]).items():
         if version(name) != before:

@@ -49,7 +49,7 @@ class Answer:
 
 
 def print_json(value: Any) -> None:
-    """One JSON document on standard output; not-a-number never appears in it."""
+    """One JSON document on standard output; it never contains NaN."""
     text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
     try:
         text.encode(sys.stdout.encoding or "ascii")
@@ -107,7 +107,7 @@ def print_warnings(warnings: Sequence[str]) -> None:
 
 
 def working(text: str, shown: bool) -> AbstractContextManager[Any]:
-    """A sign of life on standard error for work of a few seconds, if that is a terminal."""
+    """A spinner on standard error for work of a few seconds, if that is a terminal."""
     if not shown or not sys.stderr.isatty():
         return nullcontext()
     from rich.console import Console
@@ -127,7 +127,7 @@ def warned(warnings: Sequence[str]) -> Iterator[None]:
 
 
 def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
-    """What tells a log that long work goes on: share done and time left, at most so often in s."""
+    """Progress for a log: share done and time left, at most one line every so many seconds."""
     begin = last = time.monotonic()
 
     def say(share: float) -> None:
@@ -143,7 +143,7 @@ def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
 
 @contextmanager
 def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | None]:
-    """A progress bar with the time left on standard error; where that is no terminal, a line now and then."""
+    """A progress bar with the time left on standard error; where that is not a terminal, occasional lines."""
     if not shown:
         yield None
         return

@@ -82,7 +82,7 @@ def exit_code(rows: Sequence[Criterion]) -> int:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What there is to say of one case.
+    """Checks, criteria and warnings of one case.
 
     values : what tells it from the others
     criteria : of its system; empty where it was not judged, or failed
@@ -194,7 +194,7 @@ def sweep_exit_code(verdicts: Sequence[Verdict], system: PowerSystem | None) -> 
 
 
 def remarks(verdicts: Sequence[Verdict]) -> Iterator[dict[str, Any]]:
-    """Rows of a table: all that is to be said of the cases, in words."""
+    """Rows of a table: all remarks on the cases, in words."""
     from catenary_fe.results import labels
 
     for verdict in verdicts:

@@ -1,4 +1,4 @@
-"""What a run says of itself: its checks, and, where it was stopped, why and when."""
+"""Quality checks of a run as objects, and why and when a run that did not finish was stopped."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class Check:
 
     @property
     def value_text(self) -> str:
-        """Value and unit as a table says them."""
+        """Value and unit as tables write them."""
         text = f"{self.value:.4g}" if abs(self.value) >= 1e-3 else f"{self.value:.1g}"
         return f"{text} {self.unit}".rstrip()
 
     @property
     def bound_text(self) -> str:
-        """Rule, bound and unit as a table says them."""
+        """Rule, bound and unit as tables write them."""
         return f"{self.rule} {self.bound:.4g} {self.unit}".rstrip()
 
     @property
@@ -82,7 +82,7 @@ def checks_in_words(checks: Sequence[Check]) -> str:
 
 @dataclass(frozen=True)
 class Partial:
-    """Why and when a run ended before its time.
+    """Why and when a run was stopped before its end.
 
     reached_s, planned_s : [s]
     """

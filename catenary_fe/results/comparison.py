@@ -1,4 +1,4 @@
-"""Runs side by side: their key figures, and what went into them differently."""
+"""Runs side by side: their key figures, and the inputs that differ."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def _leaves(value: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _text(values: list[Any]) -> str:
-    """The different values in their order; many of them by how many they are and how far they reach."""
+    """The distinct values in order; of many, their number and range."""
     different = list(dict.fromkeys(v for v in values if v is not None))
     if not different:
         return "–"

@@ -61,7 +61,7 @@ class Criterion:
 
     @property
     def passed(self) -> bool | None:
-        """Whether the value keeps the limit; None where no limit is known."""
+        """Whether the value meets the limit; None where no limit is known."""
         if self.limit is None:
             return None
         allowed = self.limit + (self.tolerance if self.relation == "at most" else -self.tolerance)
@@ -69,7 +69,7 @@ class Criterion:
 
     @property
     def used(self) -> float | None:
-        """Share of the limit: 1 at the limit, more beyond it, infinite where nothing of it is left.
+        """Share of the limit: 1 at the limit, more beyond it, infinite where the margin is zero or negative.
 
         Value over limit, or limit over value where that is a lower one; of a figure that is a mean less its
         scatter, the scatter over what the mean has above the limit. None where no limit is known.
@@ -87,7 +87,7 @@ class Criterion:
 
     @property
     def limit_text(self) -> str:
-        """Relation, limit and unit as a table says them; '–' where no limit is known."""
+        """Relation, limit and unit as tables write them; '–' where no limit is known."""
         if self.limit is None:
             return "–"
         about = f" (± {self.tolerance:g})" if self.tolerance else ""
@@ -95,7 +95,7 @@ class Criterion:
 
     @property
     def value_text(self) -> str:
-        """Value and unit as a table says them."""
+        """Value and unit as tables write them."""
         return f"{self.value:.{self._digits}f} {self.unit}"
 
     @property
@@ -145,7 +145,7 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
     filter : "causal" (as EN 50317 measures) or "zero-phase"
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, 0.1 or 0.2 % of the time in
-    losses of contact longer than 5 ms, room for twice the uplift at steady arms that say how much they have
+    losses of contact longer than 5 ms, clearance for twice the uplift at steady arms that state theirs
     (``uplift_room``), 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
     it (:meth:`Run.with_elasticity`); no limit of it is known here.
 
@@ -189,7 +189,7 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
 
 
 def missed(rows: Iterable[Criterion]) -> list[Criterion]:
-    """Those whose limit is not kept."""
+    """Criteria whose limit is not met."""
     return [row for row in rows if row.passed is False]
 
 
@@ -203,7 +203,7 @@ def criteria_in_words(rows: Sequence[Criterion]) -> str:
 
 
 def excess(rows: Iterable[Criterion]) -> dict[str, float]:
-    """By pantograph that misses a criterion: how many times its limit the one is that it misses by most."""
+    """Largest share of a limit that each pantograph which misses a criterion uses."""
     found: dict[str, float] = {}
     for row in missed(rows):
         if row.pantograph:
@@ -227,7 +227,7 @@ def criteria_table(rows: Sequence[Criterion]) -> tuple[tuple[str, ...], list[tup
 
 
 def _row(s: ForceStatistics, figure: str, **limit: Any) -> Criterion:
-    """Of a figure of the contact force, by its attribute."""
+    """The criterion of a contact-force figure, named by its attribute."""
     quantity = FORCE[figure]
     value = quantity.shown(getattr(s, figure))
     return Criterion(name=quantity.name, pantograph=s.pantograph, value=value, unit=quantity.unit, **limit)
@@ -264,30 +264,30 @@ def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Crite
 
 
 def _uplift(figures: KeyFigures) -> list[Criterion]:
-    """The tightest support of the evaluated spans; those whose room is not known make a row of their own."""
+    """The tightest support of the evaluated spans; those of unknown clearance make a row of their own."""
     uplift, supports = figures.uplift, figures.catenary.supports
     arms = {n: supports[n - 1].steady_arm for n in uplift}
-    rooms = {n: arm.uplift_room for n, arm in arms.items() if arm and arm.uplift_room is not None}
-    unknown = [n for n in uplift if n not in rooms]
+    clearances = {n: arm.uplift_room for n, arm in arms.items() if arm and arm.uplift_room is not None}
+    unknown = [n for n in uplift if n not in clearances]
     rows = []
-    if rooms:
-        tightest = max(rooms, key=lambda n: UPLIFT_FACTOR * uplift[n] - rooms[n])
+    if clearances:
+        tightest = max(clearances, key=lambda n: UPLIFT_FACTOR * uplift[n] - clearances[n])
         source = f"room for {UPLIFT_FACTOR:g} times the uplift (recalled), support {tightest}"
-        rows.append(_uplift_row(uplift[tightest], 1e3 * rooms[tightest], source))
+        rows.append(_uplift_row(uplift[tightest], 1e3 * clearances[tightest], source))
     if unknown:
         source = f"no uplift_room given, support {', '.join(map(str, unknown))}"
         rows.append(_uplift_row(max(uplift[i] for i in unknown), None, source))
     return rows
 
 
-def _uplift_row(uplift: float, room: float | None, source: str) -> Criterion:
+def _uplift_row(uplift: float, clearance: float | None, source: str) -> Criterion:
     return Criterion(
         name="twice the uplift at steady arms",
         value=1e3 * UPLIFT_FACTOR * uplift,
-        limit=room,
+        limit=clearance,
         unit="mm",
         source=source,
-        recalled=room is not None,
+        recalled=clearance is not None,
     )
 
 

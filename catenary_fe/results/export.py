@@ -62,7 +62,7 @@ def _metres(x: float) -> str:
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> list[Path]:
-    """Write each table as a CSV file of its name, at every so many times; returns the files.
+    """Write each table as a CSV file of its name, at every n-th time; returns the files.
 
     Raises InputError for a folder that cannot be written or a number of times below 1.
     """
@@ -88,7 +88,7 @@ def common_name(column: str) -> str:
 
 
 def cell(value: Any, decimals: int | None) -> Any:
-    """A value as a table holds it; what is no decimal number stays as it is."""
+    """A value as it is written to CSV; anything but a decimal number stays as it is."""
     if not isinstance(value, float | np.floating):
         return value
     if decimals is None:

@@ -74,13 +74,13 @@ def replace_all(source: Path, target: Path) -> None:
 
 
 def settle(file: Path) -> None:
-    """Bring a file from memory to the disk: after a power cut, too, its name means that it is whole."""
+    """Flush a file to the disk, so that it is whole even after a power cut."""
     with file.open("rb+") as opened:
         os.fsync(opened.fileno())
 
 
 def own_temporary_folder() -> str | None:
-    """A folder among the temporary files in which only this user writes, or None where none can be had.
+    """A temporary folder that only this user can write to, or None where there is none.
 
     Others may make what has its name before us: a folder that is not ours alone is not taken.
     """
@@ -106,7 +106,7 @@ def cannot_be_written(path: str | Path, error: OSError) -> str:
 def locked(folder: Path) -> Iterator[None]:
     """Keep other processes from writing into an existing folder meanwhile.
 
-    The lock is the system's own: it ends with its process, however that ends. On file systems that know no
+    The lock is the system's own: it ends with its process, however that ends. On file systems without
     locks there is none. Raises InputError, with the other's process number, where the folder is taken.
     """
     path = folder / LOCK

@@ -56,7 +56,7 @@ class ModeKind:
 @changed_by_copy
 @dataclass(frozen=True)
 class WireShapes:
-    """Shapes of one wire, vertical if not said otherwise, mass-normalised over the whole line.
+    """Shapes of one wire, vertical unless stated otherwise, mass-normalised over the whole line.
 
     x : [m], shape (nodes,)
     values : [1/√kg], shape (modes, nodes)
@@ -165,7 +165,7 @@ class Modes:
         ]
 
     def count_by_kind(self) -> Counter[str]:
-        """How many modes swing how: 'whole line', 'bays 1' …, 'along', 'sideways'."""
+        """Number of modes of each kind: 'whole line', 'bays 1' …, 'along', 'sideways'."""
         return Counter(f"bays {k.half_waves}" if k.kind == "bays" else k.kind for k in self.kinds())
 
     def plot(self, mode: int, ax: Axes | None = None) -> Axes:
@@ -230,7 +230,7 @@ def _bay_energies(x: Floats, shape: Floats) -> tuple[float, Floats]:
 @changed_by_copy
 @dataclass(frozen=True)
 class ModalRun:
-    """One pantograph on a line that answers with a limited number of eigenforms.
+    """One pantograph on a line whose response is a sum of a limited number of eigenforms.
 
     modes : those that were summed
     time : [s], shape (times,)
@@ -251,7 +251,7 @@ class ModalRun:
 
     @checked
     def uplift(self, x: ArrayLike, every: int = 1) -> Floats:
-        """[m], shape (times, points): uplift of the contact wire at positions [m], at every so many times."""
+        """[m], shape (times, points): uplift of the contact wire at positions [m], at every n-th time."""
         whole("every", every, least=1)
         uplift: Floats = np.tensordot(self.coordinates[::every], self.modes.contact.at(x), axes=1)
         return uplift

@@ -74,12 +74,12 @@ def _name(run: Run, pantograph: int) -> str:
 
 
 def _worst(found: Sequence[tuple[float, str]]) -> tuple[float, str]:
-    """The largest value, and what is said of it; what is not a number is the worst of all."""
+    """The largest value and its text; not-a-number counts as the largest."""
     return max(found, key=lambda item: np.inf if np.isnan(item[0]) else item[0])
 
 
 def _down(value: float) -> str:
-    """Two digits of a positive number, rounded down: what is taken for a bound keeps it."""
+    """Two digits of a positive number, rounded down, so that the value suggested meets the bound."""
     unit = 10.0 ** (floor(log10(value)) - 1)
     return f"{floor(value / unit + 1e-9) * unit:.2g}"
 
@@ -256,7 +256,7 @@ def _element_passing(run: Run) -> Iterator[Check]:
 
 
 def _steps_per_element(run: Run) -> Iterator[Check]:
-    """Each element must see the pantograph."""
+    """The pantograph must not step over whole elements."""
     mesh = _mesh(run)
     if mesh:
         shortest = min(mesh["at_clamps"], mesh["contact_wire_element"])
@@ -283,7 +283,7 @@ def _steps_per_period(run: Run) -> Iterator[Check]:
 
 
 def _end_reflection(run: Run) -> Iterator[Check]:
-    """What runs ahead to the line's end comes back; no real line ends there.
+    """Waves that run ahead are reflected at the end of the model, where no real line ends.
 
     Judged is the motion at the support before the end, early enough to be back at a pantograph, at the speed
     of the faster wire, before that leaves the evaluated spans. Supports and droppers hold most waves back: a

@@ -114,7 +114,7 @@ def in_short(statistics: Any, names: Iterable[str]) -> str:
 def figure_rows(
     quantities: Iterable[Quantity], columns: Sequence[Mapping[str, Any]]
 ) -> list[tuple[str, ...]]:
-    """A row a quantity: its label, and its number in each column, which holds shown values by their keys."""
+    """One row per quantity: its label, and its number in each column of values by key."""
     return [(q.label, *(q.number(column.get(q.key)) for column in columns)) for q in quantities]
 
 

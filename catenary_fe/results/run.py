@@ -40,7 +40,7 @@ FORMAT = "catenary_fe run 2"
 @changed_by_copy
 @dataclass(frozen=True)
 class Run:
-    """Histories of a run, as an xarray Dataset with units, and what they came from.
+    """Histories of a run, as an xarray Dataset with units, and the inputs they were computed from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
         dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
@@ -127,7 +127,7 @@ class Run:
 
     @property
     def elasticity(self) -> Elasticity | None:
-        """The line's elasticity as it was computed for this run, see :meth:`with_elasticity`; None: never."""
+        """The line's elasticity, where it was computed, see :meth:`with_elasticity`; else None."""
         if "elasticity_uplift" not in self.data:
             return None
         uplift, x = self.data["elasticity_uplift"], np.asarray(self.data["elasticity_position"].values)
@@ -136,7 +136,7 @@ class Run:
         return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), inside)
 
     def with_elasticity(self, curve: Elasticity) -> Run:
-        """The run with the line's elasticity in its data: who shows or judges it reads it there."""
+        """The run with the line's elasticity added to its data, where report and criteria read it."""
         words = {"units": "m", "long_name": "uplift of the contact wire under a static force"}
         place = ("elasticity_position", curve.position, {"units": "m", "long_name": "place of that force"})
         variable = ("elasticity_position", curve.uplift, words | {"force": curve.force})

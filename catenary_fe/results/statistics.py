@@ -62,7 +62,7 @@ class ForceStatistics:
 
     @classmethod
     def none_as_dict(cls, pantograph: str) -> dict[str, float | str | None]:
-        """As :meth:`as_dict`, with nothing in it: of spans that were not passed."""
+        """As :meth:`as_dict`, all None: of spans that were not passed."""
         return {"name": pantograph, **{q.key: None for q in FORCE.values()}}
 
     def __str__(self) -> str:
@@ -115,7 +115,7 @@ def force_statistics(
 def governing(
     figures: Sequence[ForceStatistics | None], excess: Mapping[str, float] | None = None
 ) -> str | None:
-    """Name of the pantograph whose figures decide on the line; None where there are no figures.
+    """Name of the governing pantograph; None where there are no figures.
 
     excess : by name, how many times its limit the criterion is that a pantograph misses by most
 

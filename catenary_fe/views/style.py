@@ -45,12 +45,12 @@ def pantograph_colour(number: int) -> str:
 
 
 def sequence(count: int) -> list[str]:
-    """So many colours in order, each its own, dark to bright."""
+    """Distinct colours in order, dark to bright."""
     return [to_hex(colormaps["viridis"](0.9 * i / max(1, count - 1))) for i in range(count)]
 
 
 def distinct(count: int) -> list[str]:
-    """So many colours to tell curves apart, each its own."""
+    """Distinct colours to tell curves apart."""
     return list(_MANY[:count]) if count <= len(_MANY) else sequence(count)
 
 
@@ -73,7 +73,7 @@ def own_style(settings: Mapping[str, Any] | None = None) -> Iterator[None]:
 
 
 def styled(draw: Callable[_Arguments, _Drawn]) -> Callable[_Arguments, _Drawn]:
-    """Draw in our own style; in texts a dollar sign is one."""
+    """Draw in our own style, with dollar signs in texts taken literally."""
 
     @wraps(draw)
     def drawn(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Drawn:
@@ -142,7 +142,7 @@ def run_title(run: Run, what: str) -> str:
 
 
 def note_failed(ax: Axes, failed: Iterable[str], whose: str = "") -> Axes:
-    """Say under the title which checks the shown result fails, if any."""
+    """Name under the title the checks that the result fails, if any."""
     if names := ", ".join(dict.fromkeys(failed)):
         title = f"{ax.get_title(loc='left')}\nchecks failed{whose}: {names}"
         ax.set_title(title, fontsize=10, loc="left")

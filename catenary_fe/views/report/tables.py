@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -120,50 +120,44 @@ def slack_table(run: Run) -> Table:
 def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
     """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
     caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
-    schedule = [row for row in shape.dropper_schedule() if spans is None or row.span in spans]
-    columns = ["span", "dropper", "chainage (m)", "in the span at (m)", "length (m)", "installed (m)",
-               "force (N)", "height error (mm)"]  # fmt: skip
-    rows = [
-        [
-            str(row.span),
-            str(row.dropper),
-            f"{row.chainage_m:.3f}",
-            f"{row.position_m:.3f}",
-            f"{row.length_m:.4f}",
-            f"{row.installed_length_m:.4f}",
-            f"{row.force_N:.1f}",
-            f"{round(row.contact_wire_height_error_mm, 2) + 0.0:.2f}",
-        ]
-        for row in schedule
-    ]
-    for name, text in (("hangs on", "hangs_on"), ("holds contact wire", "contact_wire")):
-        values = [str(getattr(row, text)) for row in schedule]
-        if len(set(values)) > 1:
-            columns.append(name)
-            for cells, value in zip(rows, values, strict=True):
-                cells.append(value)
-    return Table(f"Dropper schedule, {caption}", columns, rows)
+    rows = [row.as_dict() for row in shape.dropper_schedule() if spans is None or row.span in spans]
+    columns = {
+        "span": "span", "dropper": "dropper", "chainage_m": "chainage (m)",
+        "position_m": "in the span at (m)", "length_m": "length (m)", "installed_length_m": "installed (m)",
+        "force_N": "force (N)", "contact_wire_height_error_mm": "height error (mm)",
+    }  # fmt: skip
+    wires = {"hangs_on": "hangs on", "contact_wire": "holds contact wire"}
+    columns |= {key: name for key, name in wires.items() if len({row.get(key) for row in rows}) > 1}
+    return Table(f"Dropper schedule, {caption}", tuple(columns.values()), _cells(rows, columns))
 
 
 def support_table(shape: Shape) -> Table:
     """Where the wires are at each support, and what it and its steady arm hold."""
     columns = {
-        "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
+        "support": "support", "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
         "contact_wire_height_m": "contact wire at (m)", "system_height_m": "system height (m)",
         "arm_vertical_N": "arm, up (N)", "arm_lateral_N": "arm, left (N)",
         "messenger_vertical_N": "messenger wire, up (N)", "messenger_lateral_N": "messenger wire, left (N)",
         "messenger_wire_tension_kN": "its tension (kN)",
     }  # fmt: skip
-    rows = []
-    for support in shape.support_schedule():
-        flat = support.as_dict()
-        cells = [str(support.support)]
-        for key in columns:
-            found = [value for name, value in flat.items() if common_name(name) == key and value is not None]
-            digits = decimals_of(key)
-            cells.append(", ".join(str(cell(value, digits)) for value in found) or "–")
-        rows.append(cells)
-    return Table("Supports; of two contact wires the right one first", ("support", *columns.values()), rows)
+    cells = _cells([row.as_dict() for row in shape.support_schedule()], columns)
+    return Table("Supports; of two contact wires the right one first", tuple(columns.values()), cells)
+
+
+def _cells(rows: Sequence[Mapping[str, Any]], keys: Iterable[str]) -> list[list[str]]:
+    """Texts of some columns of a schedule, those of several contact wires together."""
+    return [
+        [
+            ", ".join(
+                str(cell(value, decimals_of(key)))
+                for name, value in row.items()
+                if common_name(name) == key and value is not None
+            )
+            or "–"
+            for key in keys
+        ]
+        for row in rows
+    ]
 
 
 def input_tables(run: Run) -> list[Table]:
