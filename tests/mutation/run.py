@@ -44,6 +44,7 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.statistics": ["tests/results/test_statistics.py", *_RUNS],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
     "catenary_fe.results.criteria": ["tests/results/test_criteria.py"],
+    "catenary_fe.results.quantities": ["tests/results/test_quantities.py", "tests/results/test_csv_files.py"],
     "catenary_fe.results.run": _RUNS,
     "catenary_fe.results.modes": _SHAPES,
     "catenary_fe.results.wires": _SHAPES,
