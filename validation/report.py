@@ -19,9 +19,9 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
-a curve, it is the root mean square of the difference over that of the reference. Each case has a twin, wrong
-on purpose by what its last line names, which the tests run and which must fail. *Inside* and *outside* stand
-where a reference was recalled and not read: shown, not counted.
+a curve, it is the root mean square of the difference over that of the reference. Each case has a negative
+control, wrong on purpose by what its last line names, which the tests run and which must fail. *Inside* and
+*outside* stand where a reference was recalled and not read: shown, not counted.
 """
 _HEADINGS = {"verification": "Verification", "validation": "Validation"}
 
@@ -68,7 +68,7 @@ def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
     reasons = list(dict.fromkeys(check.reason for check in checks))
     lines += ["", *(f"- Tolerance: {reason}" for reason in reasons)]
     lines += [f"- Reference: {source}" for source in sources]
-    lines += [f"- Twin: {case.off}", ""]
+    lines += [f"- Negative control: {case.off}", ""]
     if picture:
         lines += [f"![{case.title}](pictures/{case.name}.png)\n"]
     return "\n".join(lines)

@@ -126,7 +126,7 @@ def _travel(
 
 
 def raise_heads(model: Model, items: Sequence[PantographItems]) -> None:
-    """InitialState the masses from contact: a pantograph with no base spring has no other equilibrium."""
+    """Start the masses from contact: a pantograph with no base spring has no other equilibrium."""
     mbs = model.mbs
     coordinates = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     for item in items:
