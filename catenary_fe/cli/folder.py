@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from catenary_fe.layout import InputError
 from catenary_fe.results.export import write_csv
 from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
@@ -69,14 +72,21 @@ class Folder:
         save_picture(self.path / name, ax)
 
 
-def save_picture(path: Path, ax: Axes) -> None:
-    """Write a picture in the format of the file's ending. Raises InputError where that cannot be."""
-    figure = ax.get_figure(root=True)
-    assert figure is not None
+def save_picture(path: Path, picture: Axes | NDArray[np.uint8]) -> None:
+    """Write axes, or pixels of shape (height, width, 3), in the format of the file's ending.
+
+    Raises InputError where that cannot be.
+    """
     try:
-        metadata = {"Software": None} if path.suffix == ".png" else None
         with atomic_write(path) as aside:
-            figure.savefig(aside, dpi=130, metadata=metadata)
+            if isinstance(picture, np.ndarray):
+                from PIL import Image
+
+                Image.fromarray(picture).save(aside)
+            else:
+                figure = picture.get_figure(root=True)
+                assert figure is not None
+                figure.savefig(aside, dpi=130, metadata={"Software": None} if path.suffix == ".png" else None)
     except InputError:
         raise
     except ValueError as error:  # an unknown format

@@ -14,7 +14,7 @@ from catenary_fe.cli import options
 from catenary_fe.cli.design import write_schedules
 from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, read_record
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
-from catenary_fe.cli.verdicts import evaluated, exit_code, print_criteria, with_elasticity
+from catenary_fe.cli.verdicts import evaluated, exit_code, with_elasticity
 from catenary_fe.layout import (
     AnyPantograph,
     InputError,
@@ -24,6 +24,9 @@ from catenary_fe.layout import (
     counted,
     load_pantograph,
 )
+from catenary_fe.results import checks_in_words, criteria_in_words
+from catenary_fe.results.check import checks_table
+from catenary_fe.results.criteria import criteria_table
 from catenary_fe.results.quantities import FORCE, NON_UNIFORMITY, UPLIFT, figure_rows
 
 if TYPE_CHECKING:
@@ -143,11 +146,12 @@ def run(
 
     def tables() -> None:
         _print_summary(catenary.name, summary)
-        print_checks(result)
+        print_table(checks_in_words(result.checks), *checks_table(result.checks))
         if system:
-            print_criteria(system, rows)
+            print_table(f"{system}: {criteria_in_words(rows)}", *criteria_table(rows))
         if output:
-            click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
+            size = sum(file.stat().st_size for file in Path(output).iterdir() if file.is_file())
+            click.echo(f"results and pictures in {output}, {size / 1e6:.1f} MB")
 
     answer.show(summary, tables, shape)
     return exit_code(rows)
@@ -211,8 +215,7 @@ def write_run(
     folder: Folder, shape: Shape, result: Run, summary: dict[str, Any], rows: Sequence[Criterion] = ()
 ) -> None:
     """Results, pictures and summary of a run; its criteria where it was judged."""
-    from catenary_fe import views
-    from catenary_fe.views.layout import head_width
+    from catenary_fe.views.run import plot_criteria, run_pictures
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
@@ -221,20 +224,11 @@ def write_run(
     folder.keep()  # the run is safe whatever happens to its pictures
     if another:
         folder.forget(*_OF_A_RUN)
-    folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
-    folder.picture("static_shape.png", views.plot_static_shape(shape))
-    if shape.catenary.is_spatial:
-        width = head_width(result.pantographs)
-        folder.picture("plan.png", views.plot_plan(shape, head_width=width))
-    folder.picture("contact_force.png", views.plot_contact_force(result, filter=summary["filter"]))
-    folder.picture("support_uplift.png", views.plot_support_uplift(result))
-    folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
-    if result.has_energy:
-        folder.picture("energy.png", views.plot_energy(result))
+    for name, ax in run_pictures(result, shape, summary["filter"]):
+        folder.picture(f"{name}.png", ax)
     if rows:
-        folder.picture(
-            "criteria.png", views.plot_criteria(rows, title=_heading(shape.catenary.name, summary))
-        )
+        title = _heading(shape.catenary.name, summary)
+        folder.picture("criteria.png", plot_criteria(rows, title=title))
 
 
 def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[AnyPantograph]:
@@ -262,17 +256,6 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
     )
-
-
-def _megabytes(folder: str) -> float:
-    return sum(file.stat().st_size for file in Path(folder).iterdir() if file.is_file()) / 1e6
-
-
-def print_checks(run: Run) -> None:
-    """The quality checks as a table."""
-    from catenary_fe.results.check import checks_in_words, checks_table
-
-    print_table(checks_in_words(run.checks), *checks_table(run.checks))
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

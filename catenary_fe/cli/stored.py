@@ -256,9 +256,7 @@ def view(layout_or_folder: str, spans: list[int] | None, output: str | None, qui
         shape.catenary, shape.mesh, shape.installation, (min(shown), max(shown)), wait=output is None
     )
     if output:
-        from catenary_fe.views.film import save_pixels
-
-        save_pixels(Path(output), picture)
+        save_picture(Path(output), picture)
 
 
 def _shape_of(layout_or_folder: str) -> Shape:

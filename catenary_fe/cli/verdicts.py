@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from catenary_fe.cli.folder import folder_of, read_record
-from catenary_fe.cli.terminal import print_table, progress_bar, say
+from catenary_fe.cli.terminal import progress_bar, say
 from catenary_fe.layout import PowerSystem
 from catenary_fe.results.signal import FilterKind
 
@@ -60,13 +60,6 @@ def kept_evaluation(folder: str | Path) -> tuple[FilterKind, PowerSystem | None]
         next((kind for kind in kinds if kind == said.get("filter")), "causal"),
         next((system for system in systems if system == said.get("criteria_system")), None),
     )
-
-
-def print_criteria(system: PowerSystem, rows: Sequence[Criterion]) -> None:
-    """A table of all criteria."""
-    from catenary_fe.results.criteria import criteria_in_words, criteria_table
-
-    print_table(f"{system}: {criteria_in_words(rows)}", *criteria_table(rows))
 
 
 def exit_code(rows: Sequence[Criterion]) -> int:

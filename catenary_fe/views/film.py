@@ -268,19 +268,6 @@ class _View:
             )
 
 
-def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Save one picture, shape (height, width, 3). Raises InputError where that cannot be."""
-    from PIL import Image
-
-    try:
-        with atomic_write(path) as aside:
-            Image.fromarray(pixels).save(aside)
-    except InputError:
-        raise
-    except ValueError as error:  # an unknown format
-        raise InputError(f"{path}: {error}") from None
-
-
 def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:
     from PIL import Image
 

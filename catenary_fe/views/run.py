@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,11 +11,27 @@ from catenary_fe.layout.arguments import checked, number
 from catenary_fe.results import Criterion, ForceStatistics, Run, labels, spectrum
 from catenary_fe.results.quantities import in_short
 from catenary_fe.results.signal import CUT_OFF, FilterKind
+from catenary_fe.statics import Shape
 from catenary_fe.views import style
+from catenary_fe.views.layout import head_width, plot_layout, plot_plan
+from catenary_fe.views.static import plot_static_shape
 
 _NAMED = 12  # supports that a legend has room for
 _COLOURS = {"passed": "#3a7d44", "missed": "#b3261e", "not judged": "#9a9a9a"}
 _LONGEST = 2.0  # times the limit: a longer bar would leave no room to compare the others
+
+
+def run_pictures(run: Run, shape: Shape, filter: FilterKind) -> Iterator[tuple[str, Axes]]:
+    """Pictures of a run and of its line at rest, one after another, each with its name."""
+    yield "layout", plot_layout(shape.catenary, shape)
+    yield "static_shape", plot_static_shape(shape)
+    if shape.catenary.is_spatial:
+        yield "plan", plot_plan(shape, head_width=head_width(run.pantographs))
+    yield "contact_force", plot_contact_force(run, filter=filter)
+    yield "support_uplift", plot_support_uplift(run)
+    yield "dropper_forces", plot_dropper_forces(run)
+    if run.has_energy:
+        yield "energy", plot_energy(run)
 
 
 @checked

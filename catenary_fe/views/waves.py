@@ -100,7 +100,7 @@ def plot_family(
     """
     ax = new_axes(ax, (8.0, 4.0))
     for i, (name, values) in enumerate(curves.items()):
-        colour = family_colour(i, len(curves))
+        colour = colormaps["viridis"](0.05 + 0.8 * i / (len(curves) - 1)) if len(curves) > 1 else CONTACT
         ax.plot(x, 1e3 * values, color=colour, linewidth=1.6, label=name)
     for i, values in enumerate((dashed or {}).values()):
         label = "reference" if i == 0 else None
@@ -110,11 +110,6 @@ def plot_family(
     ax.grid(color="#dddddd", linewidth=0.6)
     ax.legend(fontsize=8)
     return ax
-
-
-def family_colour(number: int, count: int) -> Any:
-    """Colours that rise with the number of a curve in its family."""
-    return CONTACT if count == 1 else colormaps["viridis"](0.05 + 0.8 * number / max(1, count - 1))
 
 
 @checked

@@ -20,10 +20,12 @@ from catenary_fe.results.comparison import failed_checks, figures_table, input_d
 from catenary_fe.results.criteria import criteria_table
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape
-from catenary_fe.views import comparison, layout, static, waves
-from catenary_fe.views import run as run_pictures
+from catenary_fe.views import comparison
 from catenary_fe.views.report import series, tables
+from catenary_fe.views.run import plot_force_spectrum, run_pictures
+from catenary_fe.views.static import plot_elasticity
 from catenary_fe.views.style import new_axes, own_style, styled
+from catenary_fe.views.waves import plot_run_waves
 
 if TYPE_CHECKING:
     from jinja2 import Environment, Template
@@ -48,6 +50,7 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
         motion = None
     rows: list[Criterion] = [] if run.partial else criteria_rows(run, system, filter=filter)
     governing = tables.governing_figures(run, filter, rows)
+    checks = checks_in_words(run.checks)
     spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
@@ -60,7 +63,7 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
         "criteria": tables.Table(f"Limits of {system}", *criteria_table(rows)),
         "verdict": f"{system}: {criteria_in_words(rows)}." if rows else f"Not judged. {run.partial}.",
         "bad": any(row.passed is False for row in rows),
-        "checks_verdict": _sentence(checks_in_words(run.checks)),
+        "checks_verdict": checks[0].upper() + checks[1:] + ".",
         "warnings": run.warnings,
         "checks": tables.Table("", *checks_table(run.checks)),
         "motion": motion is not None,
@@ -84,10 +87,6 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
     return template("report.html.j2").render(content)
 
 
-def _sentence(words: str) -> str:
-    return f"{words[0].upper()}{words[1:]}."
-
-
 def _lead(run: Run) -> str:
     names = [str(name) for name in run.data["pantograph"].values]
     spans = ", ".join(map(str, run.evaluated_spans))
@@ -99,24 +98,13 @@ def _lead(run: Run) -> str:
 
 def _pictures(run: Run, shape: Shape, filter: FilterKind, *, moving: bool) -> dict[str, str]:
     """Addresses of the pictures by name, the pictures inside them."""
-    pictures = {
-        "force": svg_address(run_pictures.plot_contact_force(run, filter=filter)),
-        "uplift": svg_address(run_pictures.plot_support_uplift(run)),
-        "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
-        "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
-        "shape": svg_address(static.plot_static_shape(shape)),
-    }
-    if run.has_energy:
-        pictures["energy"] = svg_address(run_pictures.plot_energy(run))
+    pictures = {name: svg_address(ax) for name, ax in run_pictures(run, shape, filter)}
     if run.reached:
-        pictures["spectrum"] = svg_address(run_pictures.plot_force_spectrum(run))
-    if shape.catenary.is_spatial:
-        width = layout.head_width(run.pantographs)
-        pictures["plan"] = svg_address(layout.plot_plan(shape, head_width=width))
+        pictures["spectrum"] = svg_address(plot_force_spectrum(run))
     if curve := run.elasticity:
-        pictures["elasticity"] = svg_address(static.plot_elasticity(curve))
+        pictures["elasticity"] = svg_address(plot_elasticity(curve))
     if moving:
-        pictures["waves"] = svg_address(waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150)
+        pictures["waves"] = svg_address(plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150)
     return pictures
 
 
