@@ -148,11 +148,8 @@ def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
 
     given = sum(isinstance(case, SweepCase) and case.catenary.gives_dropper_lengths for case in cases)
     if given:
-        say(
-            "note",
-            f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives",
-            "cyan",
-        )
+        what = f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives"
+        say("note", what, "cyan")
 
 
 @contextmanager
@@ -202,11 +199,8 @@ def _value(text: str) -> Any:
 
 
 def _number(text: str, option: str, whole: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
+    value = _value(text)
+    if not (isinstance(value, float) and np.isfinite(value)):
         raise click.BadParameter(f"{option} {whole}: {text!r} is not a number")
     return value
 
@@ -311,13 +305,9 @@ def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
         [
             *(row.get(name, "") for name in varied),
             *("failed" if row["error"] else q.number(row[q.key]) for q in _FIGURES),
-            *(_count(row.get(key, "")) for key in said),
+            *(len(row[key].split("; ")) if row.get(key) else "" for key in said),
         ]
         for row in rows
     ]
     titles = [*varied, *(f"{q.short} {q.unit}" for q in _FIGURES), *(key.replace("_", " ") for key in said)]
     print_table("sweep", titles, table)
-
-
-def _count(names: str) -> int | str:
-    return len(names.split("; ")) if names else ""

@@ -13,10 +13,11 @@ import click
 from catenary_fe.cli.folder import folder_of, read_record
 from catenary_fe.cli.terminal import progress_bar, say
 from catenary_fe.layout import PowerSystem
+from catenary_fe.results.quantities import UPLIFT
 from catenary_fe.results.signal import FilterKind
 
 if TYPE_CHECKING:
-    from catenary_fe.results import Criterion, ForceStatistics, Run
+    from catenary_fe.results import Criterion, Run
     from catenary_fe.statics import Shape
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
     from catenary_fe.studies.sweep_store import Record
@@ -104,7 +105,7 @@ class Verdict:
 
 def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:
     """The verdict on a case, by what is kept of its run."""
-    from catenary_fe.results import ForceStatistics, excess, governing
+    from catenary_fe.results import ForceStatistics, KeyFigures, excess, governing, judge
     from catenary_fe.results.check import FAILED
     from catenary_fe.studies.sweep import BrokenCase
 
@@ -112,7 +113,14 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         return Verdict(record["values"], error=record["error"])
     summary = record["summary"]
     statistics = [ForceStatistics.from_dict(each, summary["filter"]) for each in summary["pantographs"]]
-    criteria = _criteria(summary, statistics, case, system) if system else []
+    figures = KeyFigures(
+        speed=case.speed,
+        catenary=case.catenary,
+        pantographs=case.pantographs,
+        statistics=statistics,
+        uplift={int(n): UPLIFT.si(lift) for n, lift in summary["support_uplift_mm"].items()},
+    )
+    criteria = judge(figures, system) if system else []
     failed = [text.removeprefix(FAILED) for text in summary["warnings"] if text.startswith(FAILED)]
     return Verdict(
         record["values"],
@@ -121,21 +129,6 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         [text for text in summary["warnings"] if not text.startswith(FAILED)],
         governing(statistics, excess(criteria)),
     )
-
-
-def _criteria(
-    summary: dict[str, Any], statistics: list[ForceStatistics], case: SweepCase, system: PowerSystem
-) -> list[Criterion]:
-    from catenary_fe.results import KeyFigures, judge
-
-    figures = KeyFigures(
-        speed=case.speed,
-        catenary=case.catenary,
-        pantographs=case.pantographs,
-        statistics=statistics,
-        uplift={int(support): lift / 1e3 for support, lift in summary["support_uplift_mm"].items()},
-    )
-    return judge(figures, system)
 
 
 def in_words(verdicts: Sequence[Verdict], system: PowerSystem | None) -> list[str]:

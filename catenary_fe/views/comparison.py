@@ -175,10 +175,11 @@ def _ends(rows: Rows, x: str) -> tuple[float, float]:
 
 
 def _finished(ax: Axes, rows: Rows, x: str, y: str, what: str) -> Axes:
-    names = len(ax.get_legend_handles_labels()[1])
-    if names <= 12:
-        style.headroom(ax, 0.09 * (1 + (names + 2) // 3))
-        style.legend(ax, 3)
+    names = ax.get_legend_handles_labels()[1]
+    if len(names) <= 12:
+        columns = max(1, min(3, int(145 / (8 + max(map(len, names))))))  # of a figure 10 inches wide
+        style.headroom(ax, 0.09 * (1 - (-len(names) // columns)))
+        style.legend(ax, columns)
     else:
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7)
     failing = [row for row in rows if row.get("checks_failed")]
