@@ -77,20 +77,16 @@ def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None
 
 def layout_facts(catenary: Catenary) -> dict[str, Any]:
     """Key figures of a layout in display units."""
-    wires = {}
-    for name, wire in (
-        ("contact_wire", catenary.contact_wire),
-        ("messenger_wire", catenary.messenger_wire),
-        ("stitch_wire", catenary.stitch_wire),
-    ):
-        if wire is None:
-            continue
-        wires[name] = {
+    wires = {
+        name: {
             "tension_kN": wire.tension / 1e3,
             "mass_per_length_kg_per_m": wire.mass_per_length,
             "wave_speed_kmh": 3.6 * wire.wave_speed,
             "impedance_Ns_per_m": wire.impedance,
         }
+        for name in ("contact_wire", "messenger_wire", "stitch_wire")
+        if (wire := getattr(catenary, name))
+    }
     lengths = [span.length for span in catenary.spans]
     clamps = sum(d.messenger_clamp_mass + d.contact_wire_clamp_mass for d in catenary.droppers)
     contact_wires = len(catenary.contact_wire_offsets)

@@ -85,21 +85,11 @@ def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], l
     wire = lines[0].height(x)
     ax.vlines(x, low, tops, color=style.SUPPORT, linewidth=0.8, linestyle=":")
     ax.plot(x, tops, "v", color=style.SUPPORT, markersize=7 if part.is_close else 4, label="support")
-    arms = [
-        n
-        for n, i in enumerate(part.supports)
-        if catenary.supports[i].steady_arm and 0 < i < len(catenary.spans)
-    ]
+    inner = range(1, len(catenary.spans))
+    arms = [n for n, i in enumerate(part.supports) if i in inner and catenary.supports[i].steady_arm]
     if arms:
-        ax.plot(
-            x[arms],
-            wire[arms],
-            "o",
-            color=style.SUPPORT,
-            markersize=5 if part.is_close else 3,
-            fillstyle="none",
-            label="steady arm",
-        )
+        at, size = (x[arms], wire[arms]), 5 if part.is_close else 3
+        ax.plot(*at, "o", color=style.SUPPORT, markersize=size, fillstyle="none", label="steady arm")
     style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
 
 
@@ -116,10 +106,7 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
     distances = [f"{round(b - a, 3):g}" for a, b in pairwise(stations)]
     if style.label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
         ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
-    bottom, top = (
-        float(lines[0].height(x[:1])[0]),
-        float(part.catenary.messenger_support_heights[part.first - 1]),
-    )
+    bottom, top = lines[0].height(x[:1])[0], part.catenary.messenger_support_heights[part.first - 1]
     at = x[0] + 0.006 * (part.end - part.start)
     _dimension(ax, (at, bottom), (at, top), f"system height {round(top - bottom, 3):g} m", vertical=True)
 
@@ -130,7 +117,7 @@ def _dimension(
     ax.annotate("", start, end, arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": "#333333"})
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
     if vertical:
-        ax.annotate(text, middle, (2, 0), textcoords="offset points", va="center", rotation=90, fontsize=8)
+        style.annotate(ax, text, middle, (2, 0), va="center", rotation=90)
     else:
         ax.text(*middle, text, va="center", ha="center", fontsize=8, backgroundcolor="white")
 
@@ -255,14 +242,5 @@ def _name_forces(ax: Axes, ends: Sequence[tuple[float, float]], texts: Sequence[
     if rotation is None:
         return
     for i, (place, text) in enumerate(zip(ends, texts, strict=True), start=1):
-        last = i == len(ends)
-        ax.annotate(
-            text,
-            place,
-            xytext=(-6 if last else 6, 0),
-            textcoords="offset points",
-            ha="right" if last else "left",
-            va="center",
-            rotation=rotation,
-            fontsize=8,
-        )
+        offset, side = (-6, "right") if i == len(ends) else (6, "left")
+        style.annotate(ax, text, place, (offset, 0), ha=side, va="center", rotation=rotation)

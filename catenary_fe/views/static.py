@@ -109,14 +109,9 @@ def plot_elasticity(elasticity: Elasticity, *, ax: Axes | None = None) -> Axes:
     low, high = ax.get_xlim()
     for index, place in ((e.argmin(), -12), (e.argmax(), 6)):
         share = (x[index] - low) / (high - low)
-        ax.annotate(
-            f"{e[index]:.3f} mm/N at {x[index]:.1f} m",
-            (x[index], e[index]),
-            xytext=(0, place),
-            textcoords="offset points",
-            ha="left" if share < 0.1 else "right" if share > 0.9 else "center",
-            fontsize=8,
-        )
+        side = "left" if share < 0.1 else "right" if share > 0.9 else "center"
+        text = f"{e[index]:.3f} mm/N at {x[index]:.1f} m"
+        style.annotate(ax, text, (x[index], e[index]), (0, place), ha=side)
     ax.set_ylim(0, 1.2 * e.max())
     ax.legend(loc="lower right", fontsize=8)
     title = f"Elasticity under {elasticity.force:g} N, non-uniformity {100 * elasticity.non_uniformity:.1f} %"

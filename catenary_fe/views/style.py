@@ -203,6 +203,13 @@ def rotation_that_fits(ax: Axes, x: ArrayLike, texts: Sequence[str], size: float
     return 90 if (room > 1.3 * size).all() else None
 
 
+def annotate(
+    ax: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **options: Any
+) -> None:
+    """Write a text beside a point, so many points [pt] to the right and up."""
+    ax.annotate(text, place, offset, textcoords="offset points", **{"fontsize": 8, **options})
+
+
 def label_row(
     ax: Axes, x: ArrayLike, y: ArrayLike, texts: Sequence[str], *, size: float = 7, above: float = 0
 ) -> bool:
@@ -214,15 +221,7 @@ def label_row(
     if rotation is None:
         return False
     places = np.broadcast_to(np.asarray(y, dtype=float), np.shape(x))
+    options = {"ha": "center", "va": "bottom" if above else "center", "rotation": rotation, "fontsize": size}
     for place, height, text in zip(np.asarray(x, dtype=float), places, texts, strict=True):
-        ax.annotate(
-            text,
-            (place, height),
-            xytext=(0, above),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if above else "center",
-            rotation=rotation,
-            fontsize=size,
-        )
+        annotate(ax, text, (place, height), (0, above), **options)
     return True

@@ -173,23 +173,18 @@ def input_tables(run: Run) -> list[Table]:
 
 def _line_table(catenary: Catenary) -> Table:
     lengths = [span.length for span in catenary.spans]
-    counts = [len(span.droppers) for span in catenary.spans]
+    counts, damping = [len(span.droppers) for span in catenary.spans], catenary.damping
+    stiffnesses = _range([dropper.stiffness / 1e3 for dropper in catenary.droppers])
     rows = [
         ("source", catenary.source or "not given"),
         ("spans", f"{len(lengths)} of {_range(lengths)} m, {catenary.length:g} m in all"),
-        (
-            "droppers",
-            f"{_range(counts)} in a span, {_range([d.stiffness / 1e3 for d in catenary.droppers])} kN/m",
-        ),
+        ("droppers", f"{_range(counts)} in a span, {stiffnesses} kN/m"),
         ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
         ("contact wire height", f"{catenary.contact_wire_height:g} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_height)} m"),
         ("steady arms", _arms(catenary)),
-        (
-            "damping of wires and taut droppers",
-            f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s",
-        ),
+        ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_sideways(catenary),
     ]
