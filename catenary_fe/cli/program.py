@@ -37,7 +37,7 @@ Examples:
 
 @click.command(epilog="\b\nExample:\n  catenary-fe validate --quick")
 @click.argument("cases", nargs=-1)
-@click.option("--quick", is_flag=True, help="Only what takes seconds.")
+@options.flag("--quick", "Only what takes seconds.")
 @options.jobs
 @options.as_json
 @options.quiet
@@ -78,17 +78,10 @@ def selfcheck(as_json: bool, quiet: bool) -> int:
     elif not quiet:
         columns = ("quantity", "computed", "reference", "unit", "error", "tolerance", "passed")
         rows = [
-            (
-                c.name,
-                f"{c.computed:.6g}",
-                f"{c.reference:.6g}",
-                c.unit,
-                f"{c.error:.1e}",
-                f"{c.tolerance:g}",
-                "yes" if c.passed else "NO",
-            )
+            (c.name, f"{c.computed:.6g}", f"{c.reference:.6g}", c.unit, f"{c.error:.1e}", f"{c.tolerance:g}",
+             "yes" if c.passed else "NO")
             for c in checks
-        ]
+        ]  # fmt: skip
         print_table("selfcheck", columns, rows)
     missed = sum(not c.passed for c in checks)
     click.echo(f"{len(checks) - missed} passed, {missed} missed", err=True)

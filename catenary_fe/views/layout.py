@@ -163,7 +163,7 @@ def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> N
     above = high + 0.08 * (high - low)
     style.label_row(ax, part.support_x, above, [str(i + 1) for i in part.supports], size=8, above=1)
     _draw_curves(ax, part)
-    title = f"{catenary.name}: plan{part.where}, {_curve(part)}; sideways much exaggerated"
+    title = f"{catenary.name}: plan{part.where}, {_curve(part)}; lateral positions much exaggerated"
     style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
 
 
@@ -216,7 +216,7 @@ def _droppers_from_above(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
 
 
 def _draw_arms(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
-    """Arms as long as they are, seen from above, with the force that they hold sideways."""
+    """Arms at their length, seen from above, with the lateral force that they take."""
     forces, catenary = shape.installation.arm_forces, shape.catenary
     ends: list[tuple[float, float]] = []
     texts = []

@@ -134,7 +134,7 @@ def _pieces(elasticity: Elasticity) -> list[slice]:
 def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     """Both wires in one eigenform (mode numbered from 0), each about its own line, droppers between them.
 
-    Drawn is the vertical motion, of a mode that swings sideways the motion to the left.
+    Drawn is the vertical motion, of a lateral mode the motion to the left.
     """
     ax = style.new_axes(ax, (10.0, 3.0))
     catenary = modes.catenary
@@ -166,8 +166,8 @@ def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     return style.finish(ax, style.ALONG, "", title)
 
 
-def _drawn(wire: WireShapes, mode: int, sideways: bool) -> np.ndarray:
-    shapes = wire.lateral if sideways and wire.lateral is not None else wire.values
+def _drawn(wire: WireShapes, mode: int, lateral: bool) -> np.ndarray:
+    shapes = wire.lateral if lateral and wire.lateral is not None else wire.values
     return np.asarray(shapes[mode])
 
 

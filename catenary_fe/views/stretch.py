@@ -244,7 +244,7 @@ def upper_wires(catenary: Catenary, shape: Shape | None) -> NDArray[np.int64]:
 
 
 def draw_lines(ax: Axes, lines: list[Line], axis: str) -> None:
-    """Draw wires against their heights, "z", or their places sideways, "y"; each kind is named once."""
+    """Draw wires against their heights, "z", or their lateral positions, "y"; each kind is named once."""
     named: set[str] = set()
     for line in reversed(lines):
         if line.x.size:

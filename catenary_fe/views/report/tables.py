@@ -186,7 +186,7 @@ def _line_table(catenary: Catenary) -> Table:
         ("steady arms", _arms(catenary)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
-        *_sideways(catenary),
+        *_lateral_rows(catenary),
     ]
     return Table("Line", ("", "value"), rows)
 
@@ -203,7 +203,7 @@ def _arms(catenary: Catenary) -> str:
     return "; ".join(kinds) or "none"
 
 
-def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
+def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     """What leaves the vertical plane, where anything does."""
     rows = []
     if np.any(catenary.staggers):
