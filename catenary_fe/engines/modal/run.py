@@ -13,8 +13,7 @@ from catenary_fe.engines.settings import SHORTEST_STEP
 from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number
 from catenary_fe.layout.substructure import Substructure
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import Modes
+from catenary_fe.results.modes import ModalRun, Modes
 from catenary_fe.statics import Shape
 
 Floats = NDArray[np.float64]
