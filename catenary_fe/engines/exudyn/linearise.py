@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.engines.exudyn.wire import WireItems
 from catenary_fe.fe import cable
-from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.cable import scattered
 
 Floats = NDArray[np.float64]
 

@@ -21,6 +21,7 @@ from catenary_fe.engines.exudyn.wire import (
     add_wire,
     anchor_and_tension,
 )
+from catenary_fe.fe.assembly import assemble
 from catenary_fe.fe.installation import (
     Installation,
     curve_pulls,
@@ -29,7 +30,7 @@ from catenary_fe.fe.installation import (
     wire_kinds,
 )
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.system import System, assemble
+from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.exudyn.wire import WireItems, hold
+from catenary_fe.fe.assembly import LINK_STIFFNESS
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.restraints import LINK_STIFFNESS
 from catenary_fe.layout import Catenary, SteadyArm
 
 Floats = NDArray[np.float64]
