@@ -12,9 +12,8 @@ from catenary_fe.cli import options
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
 from catenary_fe.layout import Catenary, load_catenary
-from catenary_fe.layout.catenary_rules import check_lengths
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
-from catenary_fe.layout.preflight import layout_warnings
+from catenary_fe.layout.rules import check_lengths, layout_warnings
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import decimals_of
 

@@ -16,7 +16,7 @@ import click
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.surroundings import writes_unicode
 from catenary_fe.layout import Catenary, CatenaryError
-from catenary_fe.layout.preflight import layout_warnings
+from catenary_fe.layout.rules import layout_warnings
 
 if TYPE_CHECKING:
     from catenary_fe.fe import MeshSettings

@@ -14,10 +14,8 @@ from catenary_fe.layout.pantograph import (
     Stage,
 )
 from catenary_fe.layout.parameters import GRAVITY
-from catenary_fe.layout.preflight import layout_warnings
-from catenary_fe.layout.span import Span
-from catenary_fe.layout.support import SteadyArm, Support
-from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.rules import layout_warnings
 
 __all__ = [
     "GRAVITY",

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
-from catenary_fe.layout.catenary_rules import catenary_faults
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import (
     GRAVITY,
@@ -23,9 +22,8 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
-from catenary_fe.layout.span import Span
-from catenary_fe.layout.support import SteadyArm, Support
-from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.rules import catenary_faults
 
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:

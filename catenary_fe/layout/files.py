@@ -24,10 +24,8 @@ from catenary_fe.layout.parameters import (
     problem_lines,
     shorten,
 )
-from catenary_fe.layout.span import Span
-from catenary_fe.layout.support import SteadyArm, Support
+from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.toml import read_toml
-from catenary_fe.layout.wire import Dropper, StitchWire, Wire
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
 MOST_DROPPERS = 200_000  # of a line, likewise

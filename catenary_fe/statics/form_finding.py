@@ -1,21 +1,346 @@
-"""Form finding: dropper lengths that give the contact wire its design height, and the reverse."""
+"""Form finding: dropper lengths that bring the contact wire to its design height, and the reverse."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from math import tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.mesh import MeshSettings
-from catenary_fe.layout import Catenary
+from catenary_fe.fe.assembly import balanced
+from catenary_fe.fe.cable import scattered
+from catenary_fe.fe.installation import Installation, curve_pulls
+from catenary_fe.fe.mesh import MeshSettings, make_mesh
+from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.catenary_rules import check_lengths
-from catenary_fe.statics.hanging import Hanging
-from catenary_fe.statics.rules import check_pulls, check_room, check_stretch, given_lengths
-from catenary_fe.statics.shape import Shape
+from catenary_fe.layout.rules import check_lengths
+from catenary_fe.statics.rules import (
+    check_links,
+    check_pulls,
+    check_room,
+    check_stretch,
+    dropper_names,
+    given_lengths,
+)
+from catenary_fe.statics.shape import HangingWire, Shape
+from catenary_fe.statics.taut_wires import TautProblem, TautWires, installed_lines
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Held = dict[int, float]
+
+_LEAST_STEP = 1e-6  # of a Newton step: below it no step lowers the energy any more
+
+
+class Hanging:
+    """All wires of a catenary and what is known of them so far.
+
+    found : [m], shape (axes - 1, 2 * nodes), per axis across the track the nodes' places, then their slopes;
+        heights are the last
+    pull : [N], shape (droppers,), of each dropper on its contact wire, upwards
+    """
+
+    def __init__(self, catenary: Catenary, settings: MeshSettings) -> None:
+        self.catenary, self.settings = catenary, settings
+        self.mesh = make_mesh(catenary, settings)
+        self.wires = TautWires(catenary, self.mesh)
+        self.axes = 3 if catenary.is_spatial else 2
+        droppers = catenary.droppers
+        self.stiffness = np.array([d.stiffness for d in droppers], dtype=float)
+        self.found = np.zeros((self.axes - 1, 2 * self.wires.nodes))
+        self.pull, self._half_weight = np.zeros(len(droppers)), np.zeros(len(droppers))
+        self._lower = self.wires.dof[self.mesh.nodes(self.mesh.lower)]
+        self._upper = self.wires.dof[self.mesh.nodes(self.mesh.upper)]
+        self._lateral: Floats = np.zeros(2 * self.wires.nodes)  # reactions [N]
+        self._vertical: Floats = np.zeros(2 * self.wires.nodes)
+        guess = -catenary.lateral_pulls / self.mesh.contact_wires
+        self._pushed_aside = np.tile(guess, (self.mesh.contact_wires, 1))
+
+    # what acts
+
+    def take_lengths(self, lengths: Floats) -> None:
+        """Lengths [m] of the droppers, of which their weight comes."""
+        per_length = np.array([d.mass_per_length for d in self.catenary.droppers])
+        self._half_weight = GRAVITY * per_length * lengths / 2
+
+    def _clamps(self, which: str) -> Floats:
+        """[N], shape (droppers,): weight at one end of the droppers."""
+        masses = np.array([getattr(d, which) for d in self.catenary.droppers], dtype=float)
+        return GRAVITY * masses + self._half_weight
+
+    def _longer(self) -> Floats:
+        """Shape (elements,): length of wire, under its nominal tension, over that along the track."""
+        wires = self.wires
+        rise = self.found[:, wires.dof[wires.left + 1]] - self.found[:, wires.dof[wires.left]]
+        arc = np.sqrt(1 + ((rise / wires.length) ** 2).sum(axis=0))
+        stretch = 1 + (arc * wires.tension - wires.of_wire("tension")) / wires.of_wire("axial_stiffness")
+        longer: Floats = arc / stretch
+        return longer
+
+    def _loads_along(self) -> Floats:
+        """[N/m], shape (axes - 1, elements): weight, and in curves the pull to their inside."""
+        weight = self.wires.weight * self._longer()
+        loads = -GRAVITY * weight[None]
+        if self.axes == 3:
+            loads = np.stack([np.concatenate(curve_pulls(self.catenary, self.mesh)) * weight, loads[0]])
+        return loads
+
+    def _arms(self) -> list[tuple[int, int, int, SteadyArm]]:
+        """Contact wire, support, displacement and arm of every steady arm between the line's ends."""
+        return [
+            (wire, i, self._at_support(wire, i), support.steady_arm)
+            for i, support in list(enumerate(self.catenary.supports))[1:-1]
+            if support.steady_arm
+            for wire in range(self.mesh.contact_wires)
+        ]
+
+    def _at_support(self, wire: int, support: int) -> int:
+        node = self.mesh.first_nodes[wire] + self.mesh.wires[wire].supports[support]
+        return int(self.wires.dof[node])
+
+    def _lift(self, wire: int, support: int, arm: SteadyArm) -> float:
+        """[N] upward, of a bar of given inclination under the lateral force that it has."""
+        return abs(float(self._pushed_aside[wire, support])) * tan(arm.inclination or 0.0)
+
+    def _heights_loads(self) -> Floats:
+        """[N], shape (2 * nodes,), of the wires, what they carry at masts and stitch wires' clamps."""
+        force = self.wires.load(self._loads_along()[-1])
+        for wire, i, at, arm in self._arms():
+            force[at] -= GRAVITY * arm.hanging_mass
+            if arm.stiffness is not None and not arm.holds_height:
+                force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_height
+            elif not arm.holds_height:
+                force[at] += self._lift(wire, i, arm)
+        if self.catenary.stitch_wire:
+            clamps = self.mesh.first_nodes[self.mesh.contact_wires] + self.mesh.stitch_ends.ravel()
+            np.add.at(force, clamps, -GRAVITY * self.catenary.stitch_wire.clamp_mass)
+        return force
+
+    # what holds
+
+    def _held_heights(self) -> Held:
+        """Heights [m] that masts hold, by displacement."""
+        catenary = self.catenary
+        held: Held = {}
+        last = len(catenary.supports) - 1
+        for wire in range(self.mesh.contact_wires):
+            held |= {self._at_support(wire, i): catenary.contact_wire_height for i in (0, last)}
+        held |= {at: catenary.contact_wire_height for _, _, at, arm in self._arms() if arm.holds_height}
+        for i, height in enumerate(catenary.messenger_support_heights.tolist()):
+            held[self._at_support(self.mesh.contact_wires, i)] = height
+        return held
+
+    def _held_aside(self) -> Held:
+        """Lateral positions [m] that masts hold, by displacement."""
+        catenary, held, last = self.catenary, {}, len(self.catenary.supports) - 1
+        for i, support in enumerate(catenary.supports):
+            held[self._at_support(self.mesh.contact_wires, i)] = support.messenger_stagger
+            if not (support.steady_arm or i in (0, last)):
+                continue
+            for wire, offset in enumerate(catenary.contact_wire_offsets):
+                held[self._at_support(wire, i)] = support.stagger + offset
+        return held
+
+    @cached_property
+    def _arm_springs(self) -> Any:
+        """Sparse stiffness [N/m] of arms that do not hold the contact wire's height."""
+        from scipy.sparse import coo_matrix
+
+        springs = [
+            (at, arm.stiffness) for _, _, at, arm in self._arms() if arm.stiffness and not arm.holds_height
+        ]
+        at, values = [at for at, _ in springs], [value for _, value in springs]
+        return coo_matrix((values, (at, at)), shape=self.wires.stiffness.shape).tocsr()
+
+    @cached_property
+    def _heights(self) -> TautProblem:
+        """The wires with their droppers cut, the contact wires held where the droppers were."""
+        held = dict(zip(self._lower.tolist(), self.catenary.design_heights.tolist(), strict=True))
+        return self.wires.problem(held | self._held_heights(), self._arm_springs)
+
+    # to hang
+
+    def hang(self) -> None:
+        """Hang all wires once more, droppers at their design heights, with what is known from before.
+
+        First the contact wires, whose droppers' pull then loads the wires above them.
+        """
+        force = self._heights_loads()
+        _, reactions = self._heights.solve(force)
+        self.pull = reactions[self._lower] + self._clamps("contact_wire_clamp_mass")
+        np.add.at(force, self._upper, -np.maximum(self.pull, 0.0) - self._clamps("messenger_clamp_mass"))
+        self.found[-1], self._vertical = self._heights.solve(force)
+        if self.axes == 3:
+            self._place_sideways()
+
+    def _place_sideways(self) -> None:
+        """Where the wires hang to the sides, the droppers leaning between them."""
+        from scipy.sparse import coo_matrix
+
+        righting = np.maximum(self.pull, 0.0) / np.maximum(self.spread()[:, -1], 1e-3)
+        a, b = self._lower, self._upper
+        entries = np.concatenate([righting, righting, -righting, -righting])
+        place = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
+        springs = coo_matrix((entries, place), shape=self.wires.stiffness.shape).tocsr()
+        problem = self.wires.problem(self._held_aside(), springs)
+        self.found[0], self._lateral = problem.solve(self.wires.load(self._loads_along()[0]))
+        self._read_lateral_arms()
+
+    def _read_lateral_arms(self) -> None:
+        for wire, i, at, _ in self._arms():
+            self._pushed_aside[wire, i] = self._lateral[at]
+
+    def hang_on_droppers(self, lengths: Floats) -> None:
+        """One step towards where droppers of given lengths [m], shape (droppers,), make the wires hang.
+
+        A Newton step on the stored energy, which is convex: shortened where it would raise it.
+        """
+        force = np.stack([self.wires.load(load) for load in self._loads_along()])
+        force[-1] = self._heights_loads()
+        np.add.at(force[-1], self._lower, -self._clamps("contact_wire_clamp_mass"))
+        np.add.at(force[-1], self._upper, -self._clamps("messenger_clamp_mass"))
+        step = self._newton_step(force, lengths)
+        before, share = self._energy(self.found, force, lengths), 1.0
+        slope = -float((self._residual(self.found, force, lengths) * step).sum())
+        while (
+            self._energy(self.found + share * step, force, lengths)
+            > before + 1e-4 * share * slope + 1e-12 * abs(before)
+            and share > _LEAST_STEP
+        ):
+            share /= 2
+        self.found = self.found + share * step
+        span = self.spread()
+        now = np.linalg.norm(span, axis=1)
+        self.pull = self.tensions(lengths) * span[:, -1] / now
+        reactions = -self._residual(self.found, force, lengths)
+        self._vertical = reactions[-1]
+        if self.axes == 3:
+            self._lateral = reactions[0]
+            self._read_lateral_arms()
+
+    def _residual(self, found: Floats, force: Floats, lengths: Floats) -> Floats:
+        """[N], shape (axes - 1, 2 * nodes), out of balance; what holds a held place is missing."""
+        residual = np.stack([f - self.wires.stiffness @ u for f, u in zip(force, found, strict=True)])
+        residual[-1] -= self._arm_springs @ found[-1]
+        span = self.spread(found)
+        pull = (self.tensions(lengths, span) / np.linalg.norm(span, axis=1))[:, None] * span
+        for k in range(self.axes - 1):
+            np.add.at(residual[k], self._lower, pull[:, k + 1])
+            np.add.at(residual[k], self._upper, -pull[:, k + 1])
+        return residual
+
+    def _energy(self, found: Floats, force: Floats, lengths: Floats) -> float:
+        """[J] in wires, arms and droppers, with the potential of the loads."""
+        bent = sum(float(u @ (self.wires.stiffness @ u)) for u in found)
+        bent += float(found[-1] @ (self._arm_springs @ found[-1]))
+        droppers = float((self.tensions(lengths, self.spread(found)) ** 2 / self.stiffness).sum())
+        return (bent + droppers) / 2 - float((force * found).sum())
+
+    def _newton_step(self, force: Floats, lengths: Floats) -> Floats:
+        from scipy.sparse import block_diag
+        from scipy.sparse.linalg import splu
+
+        size = 2 * self.wires.nodes
+        K = block_diag([*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs])
+        span = self.spread()
+        tension = self.tensions(lengths, span)
+        blocks = spring_blocks(span[:, 1:], tension, np.where(tension > 0, self.stiffness, 0.0))
+        axis = size * np.arange(self.axes - 1)
+        lower, upper = self._lower[:, None] + axis, self._upper[:, None] + axis
+        index, blocks = np.hstack([lower, upper]), np.block([[blocks, -blocks], [-blocks, blocks]])
+        K = (K + scattered([(index, blocks)], K.shape[0])).tocsr()
+        free = np.tile(~self.wires.idle, self.axes - 1)
+        held = np.array(list(self._held_heights()), dtype=np.int64) + axis[-1]
+        free[held] = False
+        if self.axes == 3:
+            free[list(self._held_aside())] = False
+        at = np.flatnonzero(free)
+        step = np.zeros(free.size)
+        step[at] = splu(K[at][:, at].tocsc()).solve(self._residual(self.found, force, lengths).ravel()[at])
+        return step.reshape(self.found.shape)
+
+    # what came of it
+
+    def spread(self, found: Floats | None = None) -> Floats:
+        """[m], shape (droppers, axes), from the droppers' lower to their upper clamps."""
+        places = self.found if found is None else found
+        across = (places[:, self._upper] - places[:, self._lower]).T
+        return np.column_stack([np.zeros(len(across)), across])
+
+    def tensions(self, lengths: Floats, span: Floats | None = None) -> Floats:
+        """[N], shape (droppers,), of droppers of given lengths [m]."""
+        now = np.linalg.norm(self.spread() if span is None else span, axis=1)
+        tension: Floats = np.maximum(self.stiffness * (now - lengths), 0.0)
+        return tension
+
+    def restless(self, what: str, change: Floats) -> SolverError:
+        """The error of passes that come to no end.
+
+        change : [m], shape (droppers,) or of ``found``, in the last one
+        """
+        if change.ndim == 1:
+            place = dropper_names(self.catenary)[int(np.abs(change).argmax())]
+        else:
+            node = int(np.abs(change[:, : self.wires.nodes]).max(axis=0).argmax())
+            place = f"a wire at {self.wires.x[node]:.1f} m along the line"
+        return SolverError(
+            f"{what} by {1e3 * np.abs(change).max():.3g} mm a pass, most at {place}; look there for little"
+            " tension, long spans and stagger that leaves a steady arm or a dropper without a hold"
+        )
+
+    def shape(self, lengths: Floats) -> Shape:
+        """The wires as cable elements, hung on droppers of given lengths [m].
+
+        Raises InputError for steady arms that would have to push.
+        """
+        wires, mesh, n = self.wires, self.mesh, self.wires.nodes
+        loads = self._loads_along()
+        slopes = [wires.slopes(u, load) for u, load in zip(self.found, loads, strict=True)]
+        points = np.column_stack([wires.x, *self.found[:, :n][:, wires.dof]])
+        arm_forces, support_forces = self._arm_forces(), self._support_forces()
+        if self.axes == 3:
+            check_links(self.catenary, arm_forces)
+        lines = installed_lines(wires, points, np.column_stack(slopes))
+        balance = np.zeros(2 * self.axes * n)
+        installation = balanced(
+            self.catenary, mesh, Installation(lines, lengths, arm_forces, support_forces, balance)
+        )
+        span = self.spread()
+        return Shape(
+            catenary=self.catenary,
+            mesh_settings=self.settings,
+            mesh=mesh,
+            installation=installation,
+            wires=tuple(HangingWire.from_coordinates(line.coordinates()) for line in lines),
+            dropper_forces=self.tensions(lengths, span),
+            installed_lengths=np.linalg.norm(span, axis=1),
+        )
+
+    def _arm_forces(self) -> Floats:
+        """[N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires."""
+        forces = np.zeros((self.mesh.contact_wires, len(self.catenary.supports), self.axes - 1))
+        for wire, i, at, arm in self._arms():
+            if self.axes == 3:
+                forces[wire, i, 0] = self._lateral[at]
+            if arm.holds_height:
+                forces[wire, i, -1] = self._vertical[at]
+            elif arm.stiffness is not None:
+                raised = self.found[-1, at] - self.catenary.contact_wire_height
+                forces[wire, i, -1] = arm.preload - arm.stiffness * raised
+            else:
+                forces[wire, i, -1] = self._lift(wire, i, arm)
+        return forces
+
+    def _support_forces(self) -> Floats:
+        """[N], shape (spans + 1, axes - 1), of the supports on the messenger wire."""
+        at = [self._at_support(self.mesh.contact_wires, i) for i in range(len(self.catenary.supports))]
+        reactions = [self._lateral, self._vertical][3 - self.axes :]
+        return np.stack([reaction[at] for reaction in reactions], axis=1)
+
 
 _SETTLED = 1e-8  # [m] change from pass to pass, where form finding ends
 _PASSES = 100  # four are enough in the plane, more where much hangs on how the droppers lean

@@ -1,14 +1,17 @@
-"""Newton's method on an energy, the step shortened where it would raise it."""
+"""Newton's method on an energy, and the static contact of pantographs and line that a run starts from."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.contact import PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
+from catenary_fe.layout import SolverError
 
 Floats = NDArray[np.float64]
 
@@ -59,3 +62,114 @@ def force_floor(system: System, load: Floats) -> float:
     load : [N], shape (all,), besides the constant forces
     """
     return max(_FLOOR, _SETTLED * float(np.abs(system.force + load).max()))
+
+
+def static_contact(
+    system: System, pantographs: Sequence[PlacedPantograph]
+) -> tuple[Floats, list[PlacedPantograph]]:
+    """Displacements of the line, shape (all,), and the pantographs with their heights and contact forces.
+
+    Raises SolverError if there is no equilibrium.
+    """
+    problem = _StaticContact(system, pantographs)
+    floor = force_floor(system, np.zeros(system.place.size))
+    x, found = minimise(problem.guess(), problem.residual, problem.tangent, problem.energy, floor)
+    if not found:
+        residual = problem.residual(x)
+        worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax())
+        where = "at a pantograph"
+        if worst < system.size:
+            where = "at the " + system.name(int(np.flatnonzero(system.place == worst)[0]))
+        raise SolverError(
+            f"static contact at the start: no equilibrium found, {np.abs(residual).max():.3g} N are left"
+            f" {where}; look there for tensions, stiffnesses or forces that are far from usual values, or"
+            " refine the mesh"
+        )
+    return problem.line_part(x), problem.placed(x)
+
+
+class _StaticContact:
+    """Line, pantographs and contacts over one list of coordinates: the line's free ones, then theirs."""
+
+    def __init__(self, system: System, pantographs: Sequence[PlacedPantograph]) -> None:
+        from scipy.linalg import block_diag
+        from scipy.sparse import csr_matrix, lil_matrix
+
+        self.system, self.pantographs = system, pantographs
+        patterns, signals = system.load(np.zeros(1))
+        self.varying: Floats = signals[:, 0] @ patterns  # as a run begins
+        self.contacts = contacts_of(pantographs, len(system.contact_paths))
+        bodies = [p.body for p in pantographs]
+        self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])
+        self.K = csr_matrix(block_diag(np.zeros((0, 0)), *(body.stiffness for body in bodies)))
+        self.load = np.concatenate([np.zeros(0), *(p.uplift * p.body.load for p in pantographs)])
+        rows = lil_matrix((len(self.contacts), int(self.first[-1])))
+        self.rest = np.zeros(len(self.contacts))
+        for j, contact in enumerate(self.contacts):
+            path = system.contact_paths[contact.wire]
+            e, weights = path.at(contact.position)
+            dof, profile = path.dof[e : e + 2].ravel(), path.profile[e : e + 2].ravel()
+            for i, weight in zip(dof[dof >= 0], weights[dof >= 0], strict=True):
+                rows[j, i] -= weight
+            lateral = float(weights @ path.lateral[e : e + 2].ravel())
+            own = slice(*self.first[contact.pantograph : contact.pantograph + 2])
+            rows[j, own] = bodies[contact.pantograph].row(contact.strip, lateral)
+            self.rest[j] = float(weights @ profile) - system.contact_wire_height
+        self.rows: Any = rows.tocsr()
+
+    def guess(self) -> Floats:
+        """The line at rest, the heads so deep in it that they carry the uplift."""
+        x = np.zeros(int(self.first[-1]))
+        for number, placed in enumerate(self.pantographs):
+            law = placed.body.contact
+            mine = [j for j, contact in enumerate(self.contacts) if contact.pantograph == number]
+            depth = placed.uplift / len(mine) / law.stiffness if law.stiffness else 0.0
+            begin = self.first[number]
+            x[begin : begin + len(placed.body.bodies)] = self.rest[mine].mean() + depth
+        return x
+
+    def line_part(self, x: Floats) -> Floats:
+        """Displacements of the line, shape (all,)."""
+        return self.system.spread(x[: self.system.size])
+
+    def depths(self, x: Floats) -> Floats:
+        """[m], shape (contacts,), of the strips in the wires."""
+        depths: Floats = self.rows @ x - self.rest
+        return depths
+
+    def forces(self, x: Floats) -> Floats:
+        """[N], shape (contacts,)."""
+        return self._of_laws("force", x)
+
+    def _of_laws(self, what: str, x: Floats) -> Floats:
+        laws = [self.pantographs[contact.pantograph].body.contact for contact in self.contacts]
+        depths = self.depths(x).tolist()
+        return np.array([getattr(law, what)(depth) for law, depth in zip(laws, depths, strict=True)])
+
+    def residual(self, x: Floats) -> Floats:
+        n = self.system.size
+        line = self.system.gather(self.system.out_of_balance(self.line_part(x))) + self.varying
+        own = self.load - self.K @ x[n:]
+        residual: Floats = np.concatenate([line, own]) - self.rows.T @ self.forces(x)
+        return residual
+
+    def tangent(self, x: Floats) -> Any:
+        from scipy.sparse import block_diag, diags
+
+        line = self.system.tangent(self.line_part(x), taut=False)
+        return block_diag([line, self.K]) + self.rows.T @ diags(self._of_laws("slope", x)) @ self.rows
+
+    def energy(self, x: Floats) -> float:
+        y = x[self.system.size :]
+        own = float(y @ (self.K @ y) / 2 - self.load @ y)
+        own += float(self._of_laws("energy", x).sum() - self.varying @ x[: self.system.size])
+        return self.system.energy(self.line_part(x)) + own
+
+    def placed(self, x: Floats) -> list[PlacedPantograph]:
+        forces, heights = self.forces(x), self.rest - self.rows[:, : self.system.size] @ x[: self.system.size]
+        found = []
+        for number, placed in enumerate(self.pantographs):
+            mine = [j for j, contact in enumerate(self.contacts) if contact.pantograph == number]
+            own = x[self.first[number] : self.first[number + 1]]
+            found.append(replace(placed, heights=own.copy(), forces=forces[mine], wire_heights=heights[mine]))
+        return found

@@ -11,7 +11,7 @@ from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.parameters import shorten
-from catenary_fe.layout.preflight import layout_warnings, pantograph_warnings
+from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import Shape
 

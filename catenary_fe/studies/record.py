@@ -1,26 +1,25 @@
-"""From a history's arrays to a labelled result with its provenance."""
+"""From a history's arrays to a labelled result with its provenance; runs that were stopped are marked."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.base import RunCase
+from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout import AnyPantograph, RunInterrupted, SolverError
 from catenary_fe.results import Run
 from catenary_fe.results.run import FORMAT
 from catenary_fe.statics import Shape
-
-if TYPE_CHECKING:
-    from catenary_fe.engines.history import History
 
 Floats = NDArray[np.float64]
 _NOTES = 3  # by themselves
@@ -201,3 +200,35 @@ def _provenance(
         "input_sha256": hashlib.sha256(inputs.encode()).hexdigest(),
         "versions": json.dumps({name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy")}),
     }
+
+
+@contextmanager
+def kept_when_stopped(label: Callable[[History], Run], planned: float) -> Iterator[None]:
+    """Let the error of a drive that was stopped carry the run until then.
+
+    label : makes a run of a history
+    planned : [s] that the run should have taken
+
+    Raises SolverError or RunInterrupted with ``partial``.
+    """
+    try:
+        yield
+    except RunStopped as stopped:
+        cause = stopped.cause
+        error = cause if isinstance(cause, SolverError | RunInterrupted) else RunInterrupted()
+        if stopped.history is not None:
+            reason = str(cause) if isinstance(cause, SolverError) else "interrupted"
+            error.partial = marked(label(stopped.history), reason, planned)
+        raise error from None
+
+
+def marked(run: Run, reason: str, planned: float) -> Run:
+    """The run as a partial one: its title, which heads every picture, says so, too.
+
+    reason : why it ended
+    planned : [s] that it should have taken
+    """
+    reached = float(run.time[-1])
+    title = f"PARTIAL, {reached:.2f} of {planned:.2f} s: {run.data.attrs['title']}"
+    record = {"reason": reason, "reached_s": reached, "planned_s": planned}
+    return Run(run.data.assign_attrs(title=title, partial=json.dumps(record)), run.wall_s)

@@ -24,8 +24,7 @@ from catenary_fe.statics import Shape
 from catenary_fe.studies.checks import check_heads, check_pantographs, check_speed, run_warnings
 from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
 from catenary_fe.studies.mean_force import MeanForce
-from catenary_fe.studies.partial import kept_when_stopped
-from catenary_fe.studies.record import make_run, run_key
+from catenary_fe.studies.record import kept_when_stopped, make_run, run_key
 from catenary_fe.studies.resources import check_memory, demand
 
 Floats = NDArray[np.float64]

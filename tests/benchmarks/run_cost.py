@@ -23,7 +23,7 @@ from catenary_fe.engines.nonlinear.cables import take_cables
 from catenary_fe.engines.nonlinear.forces import local_compliance, solve
 from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.fe.contact import place
-from catenary_fe.statics.contact import static_contact
+from catenary_fe.statics.newton import static_contact
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
 SPEED, START, SECONDS, STEP = 300 / 3.6, np.array([10.0]), 6.96, 1e-3

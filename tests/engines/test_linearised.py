@@ -57,7 +57,7 @@ def test_droppers_go_slack_when_they_do_in_the_nonlinear_run(linearised, short_r
 
 
 def test_without_slack_droppers_it_would_be_another_result(linearised, short, pantograph):
-    """The twin: droppers that push as well as pull change the force by far more than the agreement above."""
+    """Negative control: droppers that also push change the force by far more than the agreement above."""
     line = LinearisedLine(cf.find_form(short))
     line.engine.setup.line.tension[:] += 1e6  # so they are never slack
     plan = linearised.data["position"].values[0]

@@ -41,7 +41,7 @@ def test_the_reference_model_lies_in_its_accepted_ranges(reference_runs, speed, 
 
 @pytest.mark.parametrize(("speed", "other"), [(250, 300), (300, 250)])
 def test_the_ranges_of_another_speed_would_be_left(reference_runs, speed, other):
-    """What must fail in the validation suite's twin: the quantities that tell the two speeds apart."""
+    """Quantities that tell the two speeds apart: what fails in the validation suite's negative control."""
     summary = reference_runs[speed].summary()
     values = summary["pantographs"][0] | {"max_support_uplift_mm": summary["max_support_uplift_mm"]}
     for quantity in ("std_N", "statistical_max_N", "statistical_min_N", "max_support_uplift_mm"):

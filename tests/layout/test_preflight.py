@@ -3,7 +3,7 @@
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.layout.preflight import layout_warnings, pantograph_warnings
+from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 
 SLIPS = {
     "contact_wire_height": 5300.0, "system_height": 1400.0, "contact_wire.mass_per_length": 951.0,

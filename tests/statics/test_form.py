@@ -29,13 +29,15 @@ def test_steady_arm_preload(reference_shape):
 
 def test_a_false_tension_would_be_seen(reference, reference_shape):
     wire = reference.contact_wire
-    twin = cf.find_form(
+    changed = cf.find_form(
         reference.replace(contact_wire=wire.replace(mass_per_length=1.01 * wire.mass_per_length))
     )
-    assert twin.dropper_forces[40] != pytest.approx(reference_shape.dropper_forces[40], rel=5e-3)
+    assert changed.dropper_forces[40] != pytest.approx(reference_shape.dropper_forces[40], rel=5e-3)
     messenger = reference.messenger_wire
-    twin = cf.find_form(reference.replace(messenger_wire=messenger.replace(tension=1.01 * messenger.tension)))
-    assert abs(twin.dropper_lengths - reference_shape.dropper_lengths).max() > 5e-3
+    changed = cf.find_form(
+        reference.replace(messenger_wire=messenger.replace(tension=1.01 * messenger.tension))
+    )
+    assert abs(changed.dropper_lengths - reference_shape.dropper_lengths).max() > 5e-3
 
 
 def test_messenger_sag_by_hand(reference, reference_shape):
@@ -118,8 +120,8 @@ def test_weights_of_clamps_and_droppers_are_carried(reference):
     # 0.2 %: the wire is a little longer than the track
     assert shape.support_forces.sum() == pytest.approx(carried, rel=2e-3)
     bare = cf.find_form(line.replace(spans=(reference.spans[0],) * 3))
-    heavier = shape.dropper_forces - bare.dropper_forces
-    assert heavier == pytest.approx(G * (0.165 + 0.117 * shape.dropper_lengths / 2), rel=1e-3)
+    tighter = shape.dropper_forces - bare.dropper_forces
+    assert tighter == pytest.approx(G * (0.165 + 0.117 * shape.dropper_lengths / 2), rel=1e-3)
 
 
 def test_an_arm_that_does_not_hold_lets_the_wire_sag(reference):

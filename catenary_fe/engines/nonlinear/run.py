@@ -32,7 +32,7 @@ from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import PlacedPantograph, place
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
-from catenary_fe.statics.contact import static_contact
+from catenary_fe.statics.newton import static_contact
 
 Floats = NDArray[np.float64]
 PARTS = (1, 2, 4, 8, 16)  # of a step, where the run does not converge with the matrix at rest

@@ -14,9 +14,7 @@ from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import Pantograph
 from catenary_fe.layout.parameters import Number, Parameters, Positive, Sideways, Text, shorten
-from catenary_fe.layout.span import Span
-from catenary_fe.layout.support import SteadyArm, Support
-from catenary_fe.layout.wire import Dropper, StitchWire, Wire
+from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
 
 
 class Line(Parameters):
