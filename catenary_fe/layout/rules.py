@@ -103,19 +103,23 @@ def _missing_twins(catenary: Catenary) -> list[str]:
     ]
 
 
-def check_lengths(catenary: Catenary) -> None:
-    """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
-    missing = [
+def dropper_names(catenary: Catenary) -> list[str]:
+    """Shape (droppers,): each dropper's name in errors."""
+    return [
         f"span {i}: dropper {number} at {dropper.position:g} m"
         for i, span in enumerate(catenary.spans, start=1)
         for number, dropper in enumerate(span.droppers, start=1)
-        if dropper.length is None
     ]
-    count = sum(len(span.droppers) for span in catenary.spans)
-    if len(missing) not in (0, count):
+
+
+def check_lengths(catenary: Catenary) -> None:
+    """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
+    names = dropper_names(catenary)
+    missing = [name for name, d in zip(names, catenary.droppers, strict=True) if d.length is None]
+    if len(missing) not in (0, len(names)):
         raise InputError(
-            f"{missing[0]} has no length: {len(missing)} of {count} droppers have none, the others have one;"
-            " give all lengths, or none to have them found"
+            f"{missing[0]} has no length: {len(missing)} of {len(names)} droppers have none, the others have"
+            " one; give all lengths, or none to have them found"
         )
 
 

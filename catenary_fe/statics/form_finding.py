@@ -17,13 +17,12 @@ from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.rules import check_lengths
+from catenary_fe.layout.rules import check_lengths, dropper_names
 from catenary_fe.statics.rules import (
     check_links,
     check_pulls,
     check_room,
     check_stretch,
-    dropper_names,
     given_lengths,
 )
 from catenary_fe.statics.shape import HangingWire, Shape

@@ -13,7 +13,7 @@ from catenary_fe.fe.cable import Cables, inner_forces, tangent_blocks
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
-from catenary_fe.statics.newton import force_floor, minimise
+from catenary_fe.statics.newton import solve_loaded
 from catenary_fe.statics.shape import Shape
 
 Floats = NDArray[np.float64]
@@ -37,21 +37,13 @@ class LoadedLine:
         self.shape = shape
         self.system: System = shape.system
 
-    def at(self, x: float) -> tuple[Integers, Floats]:
-        """Coordinates at a place [m] along the line, and how a height there is made of them.
-
-        Shape (contact wires, 4) both: height and vertical slope of the two nodes about it.
-        """
-        found = [(path, *path.at(x)) for path in self.system.contact_paths]
-        index = [path.index[e : e + 2].ravel() for path, e, _ in found]
-        return np.array(index), np.array([weights for *_, weights in found]) / len(found)
-
     def load(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
         """[N], shape (all,): upward forces [N] at places [m] along the line."""
+        wires = range(len(self.system.contact_paths))
         load = np.zeros(self.system.place.size)
         for x, force in zip(positions, forces, strict=True):
-            index, weights = self.at(float(x))
-            np.add.at(load, index, float(force) * weights)
+            for wire in wires:
+                load += float(force) / len(wires) * self.system.row(wire, float(x))
         return load
 
     def solve(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
@@ -60,45 +52,21 @@ class LoadedLine:
         Raises SolverError, with the place, if no equilibrium is found.
         """
         load = self.load(positions, forces)
-        moved, residual = self._newton(np.zeros_like(load), load)
+        moved, residual = solve_loaded(self.system, load, 0 * load)
         for step in range(1, _LOAD_STEPS + 1) if residual is not None else ():
-            moved, residual = self._newton(moved if step > 1 else 0 * moved, load * step / _LOAD_STEPS)
+            guess = moved if step > 1 else 0 * moved
+            moved, residual = solve_loaded(self.system, load * step / _LOAD_STEPS, guess)
             if residual is not None:
                 break
         if residual is None:
             return moved
         what = ", ".join(f"{f:g} N at {x:g} m" for x, f in zip(positions, forces, strict=True))
+        worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax())
         raise SolverError(
             f"static load ({what}): no static equilibrium found, neither at once nor in {_LOAD_STEPS} steps"
-            f" of the load: {np.abs(residual).max():.3g} N are left at the {self._worst(residual)}; try a"
+            f" of the load: {np.abs(residual).max():.3g} N are left at the {self.system.name(worst)}; try a"
             " smaller force, and look there for stiffnesses and tensions that are far from usual values"
         )
-
-    def _newton(self, moved: Floats, load: Floats) -> tuple[Floats, Floats | None]:
-        """Displacements, and what is left out of balance if that is too much, shape (all,)."""
-        system = self.system
-
-        def residual(x: Floats) -> Floats:
-            return system.gather(system.out_of_balance(system.spread(x)) + load)
-
-        def energy(x: Floats) -> float:
-            return float(system.energy(system.spread(x)) - load @ system.spread(x))
-
-        start = np.zeros(system.size)
-        free = system.place >= 0
-        start[system.place[free]] = moved[free]
-        x, found = minimise(
-            start,
-            residual,
-            lambda x: system.tangent(system.spread(x), taut=False),
-            energy,
-            force_floor(system, load),
-        )
-        return system.spread(x), None if found else system.spread(residual(x))
-
-    def _worst(self, residual: Floats) -> str:
-        """Where most is out of balance, in words."""
-        return self.system.name(int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax()))
 
     def lifts(self, positions: Floats, force: float, progress: Progress | None = None) -> Floats:
         """[m], shape (points,): lift of the contact wire at each place [m] under a force [N] there.
@@ -117,7 +85,7 @@ class LoadedLine:
             near, far = (
                 supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
             )
-            loads = np.stack([self._free_load(float(x), force) for x in positions[mine]])
+            loads = np.stack([system.gather(self.load([x], [force])) for x in positions[mine]])
             around = _Surroundings(self, stiffness, near, far)
             moved = around.corrected(factor.solve(loads.T).T, loads)
             if moved is None:
@@ -130,13 +98,6 @@ class LoadedLine:
             if progress:
                 progress((int(mine[-1]) + 1) / positions.size)
         return lifts
-
-    def _free_load(self, x: float, force: float) -> Floats:
-        """[N], shape (free,): an upward force [N] at a place [m]."""
-        index, weights = self.at(x)
-        place, load = self.system.place[index], np.zeros(self.system.size)
-        np.add.at(load, place[place >= 0], force * weights[place >= 0])
-        return load
 
     def _lift(self, x: float, force: float) -> float:
         """[m], by Newton's method on the whole line."""

@@ -64,6 +64,29 @@ def force_floor(system: System, load: Floats) -> float:
     return max(_FLOOR, _SETTLED * float(np.abs(system.force + load).max()))
 
 
+def solve_loaded(system: System, load: Floats, guess: Floats) -> tuple[Floats, Floats | None]:
+    """Displacements under a load, and what is left out of balance [N] if that is too much, shape (all,) each.
+
+    load : [N], shape (all,), besides the constant forces
+    guess : shape (all,), displacements to start from
+    """
+
+    def residual(x: Floats) -> Floats:
+        return system.gather(system.out_of_balance(system.spread(x)) + load)
+
+    start = np.zeros(system.size)
+    free = system.place >= 0
+    start[system.place[free]] = guess[free]
+    x, found = minimise(
+        start,
+        residual,
+        lambda x: system.tangent(system.spread(x), taut=False),
+        lambda x: system.energy(system.spread(x)) - float(load @ system.spread(x)),
+        force_floor(system, load),
+    )
+    return system.spread(x), None if found else system.spread(residual(x))
+
+
 def static_contact(
     system: System, pantographs: Sequence[PlacedPantograph]
 ) -> tuple[Floats, list[PlacedPantograph]]:

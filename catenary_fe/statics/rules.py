@@ -10,20 +10,12 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import Catenary, InputError, counted
 from catenary_fe.layout.arguments import numbers
+from catenary_fe.layout.rules import dropper_names
 
 Floats = NDArray[np.float64]
 
 STEEPEST = np.pi / 3  # [rad] a steady arm that stands up more has no hold on the wire
-_LEAST_PULL = 1.0  # [N] sideways
-
-
-def dropper_names(catenary: Catenary) -> list[str]:
-    """Shape (droppers,): each dropper's name in errors."""
-    return [
-        f"span {i}: dropper {number} at {dropper.position:g} m"
-        for i, span in enumerate(catenary.spans, start=1)
-        for number, dropper in enumerate(span.droppers, start=1)
-    ]
+_LEAST_PULL = 1.0  # [N] lateral
 
 
 def check_pulls(catenary: Catenary, pulls: Floats) -> None:
@@ -53,14 +45,14 @@ def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> No
     distances : [m], shape (droppers,), between their clamps
     tensions : [N], shape (droppers,)
     """
-    stiffness = [d.stiffness for d in catenary.droppers]
     _report(
-        f"{name}: stiffness = {k:g} N/m is too small: its tension of {tension:.0f} N would stretch it by"
-        f" {tension / k:.3g} m, and it spans {distance:.3g} m; raise it, look at its unit"
-        for name, k, distance, tension in zip(
-            dropper_names(catenary), stiffness, distances, tensions, strict=True
+        f"{name}: stiffness = {dropper.stiffness:g} N/m is too small: its tension of {tension:.0f} N would"
+        f" stretch it by {tension / dropper.stiffness:.3g} m, and it spans"
+        f" {distance:.3g} m; raise it, look at its unit"
+        for name, dropper, distance, tension in zip(
+            dropper_names(catenary), catenary.droppers, distances, tensions, strict=True
         )
-        if tension / k >= distance
+        if tension / dropper.stiffness >= distance
     )
 
 
@@ -103,13 +95,12 @@ def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) 
     """
     names = dropper_names(catenary)
     if lengths is None:
-        given = [d.length for d in catenary.droppers]
-        missing = [n for n, v in zip(names, given, strict=True) if v is None]
+        missing = [n for n, d in zip(names, catenary.droppers, strict=True) if d.length is None]
         if missing:
             raise InputError(
                 f"{missing[0]} has no length ({counted(len(missing), 'dropper')} in all); give all lengths"
             )
-        lengths = np.array(given, dtype=float)
+        lengths = np.array([d.length for d in catenary.droppers], dtype=float)
     values = numbers("lengths", lengths)
     if values.shape != (len(names),):
         raise InputError(

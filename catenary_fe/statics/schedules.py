@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -138,16 +138,11 @@ class SupportRow:
                 continue
             for number, arm in enumerate(value, start=1):
                 suffix = f"_{number}" if len(value) > 1 else ""
-                found |= {_column(key, suffix): each for key, each in arm.items()}
+                for key, each in arm.items():
+                    of_wire = key in ("stagger_m", "contact_wire_height_m")
+                    column = f"{key.removesuffix('_m')}{suffix}_m" if of_wire else f"arm{suffix}_{key}"
+                    found[column] = each
         return found
-
-
-def _column(key: str, suffix: str) -> str:
-    """Name of an arm's column: what is the wire's is called so."""
-    if key in ("stagger_m", "contact_wire_height_m"):
-        name, unit = key.removesuffix("_m"), "_m"
-        return f"{name}{suffix}{unit}"
-    return f"arm{suffix}_{key}"
 
 
 def dropper_rows(shape: Shape) -> list[DropperRow]:
@@ -168,17 +163,11 @@ def dropper_rows(shape: Shape) -> list[DropperRow]:
             force_N=float(shape.dropper_forces[i]),
             contact_wire_height_m=float(shape.height_errors[i] + catenary.design_heights[i]),
             contact_wire_height_error_mm=1e3 * float(shape.height_errors[i]),
-            hangs_on=_hangs_on(shape, i),
+            hangs_on=mesh.wire_name(int(mesh.upper.wire[i])) if shape.stitch_wires else None,
             contact_wire=int(mesh.lower.wire[i]) + 1 if mesh.contact_wires > 1 else None,
         )
         for i, dropper in enumerate(catenary.droppers)
     ]
-
-
-def _hangs_on(shape: Shape, dropper: int) -> str | None:
-    if not shape.stitch_wires:
-        return None
-    return shape.mesh.wire_name(int(shape.mesh.upper.wire[dropper]))
 
 
 def support_rows(shape: Shape) -> list[SupportRow]:
@@ -190,8 +179,7 @@ def support_rows(shape: Shape) -> list[SupportRow]:
 def _support_row(shape: Shape, i: int, pulls: Floats) -> SupportRow:
     """pulls : [N], shape (elements,), of the messenger wire along the track"""
     catenary = shape.catenary
-    before = catenary.spans[i - 1] if i else None
-    after = catenary.spans[i] if i < len(catenary.spans) else None
+    before, after = ([None, *catenary.spans, None][i + side] for side in (0, 1))
     node = int(shape.mesh.messenger.supports[i])
     height, force = float(shape.messenger_wire.z[node]), shape.installation.support_forces[i]
     arms = tuple(_arm_row(shape, wire, i) for wire in range(shape.mesh.contact_wires))
@@ -222,27 +210,19 @@ def _arm_row(shape: Shape, wire: int, support: int) -> ArmRow:
     node = shape.mesh.wires[wire].supports[support]
     stagger, height = float(hanging.y[node]), float(hanging.z[node])
     arm = catenary.supports[support].steady_arm
+    row = ArmRow(stagger_m=stagger, contact_wire_height_m=height, kind="none")
     if arm is None or support in (0, len(catenary.spans)):
-        return ArmRow(stagger_m=stagger, contact_wire_height_m=height, kind="none")
+        return row
     force = shape.installation.arm_forces[wire, support]
     lateral, up = float(force[0]) if force.size > 1 else 0.0, float(force[-1])
+    row = replace(row, vertical_N=up, lateral_N=lateral)
     if arm.length is None:
-        return ArmRow(
-            stagger_m=stagger,
-            contact_wire_height_m=height,
-            kind="spring",
-            stiffness_N_per_m=arm.stiffness,
-            vertical_N=up,
-            lateral_N=lateral,
-        )
-    return ArmRow(
-        stagger_m=stagger,
-        contact_wire_height_m=height,
+        return replace(row, kind="spring", stiffness_N_per_m=arm.stiffness)
+    return replace(
+        row,
         kind="link",
         side="left" if lateral > 0 else "right",
         length_m=arm.length,
         inclination_deg=float(np.degrees(np.arctan2(up, abs(lateral)))),
-        vertical_N=up,
-        lateral_N=lateral,
         radial_N=float(np.hypot(lateral, up)),
     )

@@ -29,7 +29,7 @@ from catenary_fe.fe.wire_problem import (
 from catenary_fe.layout import InputError, SolverError
 from catenary_fe.layout.arguments import checked, number, one_of
 from catenary_fe.layout.substructure import ContactLaw, Strip, Substructure
-from catenary_fe.statics.newton import force_floor, minimise
+from catenary_fe.statics.newton import solve_loaded
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]
@@ -117,16 +117,10 @@ def wire_at_rest(problem: WireProblem) -> Floats:
             raise InputError(f"{type(moving).__name__}: a wire at rest takes forces known in advance only")
         e, weights = path.at(moving.start)
         load[path.index[e : e + 2].ravel()] += moving.contact_force(0.0, 0.0) * weights
-    x, found = minimise(
-        np.zeros(system.size),
-        lambda x: system.gather(system.out_of_balance(system.spread(x)) + load),
-        lambda x: system.tangent(system.spread(x), taut=False),
-        lambda x: float(system.energy(system.spread(x)) - load @ system.spread(x)),
-        force_floor(system, load),
-    )
-    if not found:
+    moved, residual = solve_loaded(system, load, 0 * load)
+    if residual is not None:
         raise SolverError("wire at rest: no static equilibrium found; look at forces and stiffnesses")
-    deflection: Floats = (system.reference + system.spread(x))[path.index[:, 0]]
+    deflection: Floats = (system.reference + moved)[path.index[:, 0]]
     return deflection
 
 
