@@ -34,7 +34,7 @@ from catenary_fe.cli.terminal import (
     working,
 )
 from catenary_fe.layout import (
-    AnyPantograph,
+    DescribedPantograph,
     InputError,
     PowerSystem,
     RunInterrupted,
@@ -286,7 +286,7 @@ def write_run(
         )
 
 
-def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[AnyPantograph]:
+def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[DescribedPantograph]:
     """One pantograph a position; a single name serves for all positions."""
     loaded = [load_pantograph(name) for name in names]
     if len(loaded) == 1 and len(positions) > 1:

@@ -35,8 +35,13 @@ def make_run(
     history: History,
     warnings: Sequence[str],
     method: str,
+    *,
+    scripted: bool = False,
 ) -> Run:
-    """Label what a run recorded, and note where it comes from."""
+    """Label what a run recorded, and note where it comes from.
+
+    scripted : whether a script may have changed the model
+    """
     import xarray as xr
 
     catenary, pantographs, speed = shape.catenary, case.pantographs, case.speed
@@ -80,6 +85,8 @@ def make_run(
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, speed, time, method)
     attributes["warnings"] = json.dumps([*warnings, *_brief(history.notes)])
+    if scripted:
+        attributes["model"] = "of a script"
     return Run(xr.Dataset(variables, coordinates, attributes))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from catenary_fe.engines.exudyn.laws import contact_function, elastic_function
 from catenary_fe.engines.exudyn.wire import WireItems
-from catenary_fe.layout import AnyPantograph, ElasticPantograph, Pantograph, Stage
+from catenary_fe.layout import DescribedPantograph, ElasticPantograph, Pantograph, Stage
 
 _TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
     1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
@@ -66,7 +66,7 @@ class PantographItems:
     contacts : each strip on each contact wire
     """
 
-    pantograph: AnyPantograph
+    pantograph: DescribedPantograph
     heights: list[tuple[int, int]]
     strips: int
     contacts: list[ContactItems]
@@ -95,7 +95,7 @@ class _Mass:
 
 
 def add_pantographs(
-    track: Track, pantographs: Sequence[tuple[AnyPantograph, float]]
+    track: Track, pantographs: Sequence[tuple[DescribedPantograph, float]]
 ) -> list[PantographItems]:
     """Add pantographs of any kind, each with its uplift [N]: upward, on the lowest mass or on the wire.
 

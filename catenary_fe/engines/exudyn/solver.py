@@ -134,6 +134,8 @@ def solve_dynamic(
             f"{what}: no convergence at t = {reached:.4f} s with steps of {time.step:g} s; try a smaller time"
             " step, and look at the contact and dropper stiffnesses"
         ) from None
+    finally:
+        mbs.SetPreStepUserFunction(0)  # none: the static solver would call it, too
     if raised:
         raise raised[0]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.settings import SHORTEST_STEP
-from catenary_fe.layout import AnyPantograph, ElasticPantograph, InputError, Pantograph
+from catenary_fe.layout import DescribedPantograph, ElasticPantograph, InputError, Pantograph
 from catenary_fe.layout.arguments import checked, number
 from catenary_fe.results.modal_run import ModalRun
 from catenary_fe.results.modes import Modes
@@ -24,7 +24,7 @@ _PIECES = 8  # straight pieces of an elastic pantograph's law to try in a step
 def modal_run(
     shape: Shape,
     modes: Modes,
-    pantograph: AnyPantograph,
+    pantograph: DescribedPantograph,
     *,
     speed: float,
     start: float | None = None,
@@ -215,7 +215,7 @@ class _Chain:
         return force
 
 
-def _head(pantograph: AnyPantograph, speed: float, step: float) -> _Elastic | _Chain:
+def _head(pantograph: DescribedPantograph, speed: float, step: float) -> _Elastic | _Chain:
     if isinstance(pantograph, ElasticPantograph):
         return _Elastic(pantograph, np.zeros(0), np.zeros(0))
     if pantograph.head and pantograph.head.strips > 1:

@@ -1,0 +1,297 @@
+"""Pantographs in the multibody model, and their contacts, which move along the wires from step to step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.engines.exudyn.laws import push_only
+from catenary_fe.fe.system import System
+from catenary_fe.layout import AnyPantograph, AttachedPantograph
+from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
+    1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+    2: [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
+}
+_HEAVE, _ROLL = 2, 3  # coordinates of a rigid body's node
+
+
+@dataclass(frozen=True)
+class WireParts:
+    """A wire: its name, numbers of its nodes and elements, and the nodes' stations x [m], shape (nodes,)."""
+
+    name: str
+    nodes: list[int]
+    elements: list[int]
+    x: Floats
+
+
+@dataclass(frozen=True)
+class ContactParts:
+    """A collector strip on a contact wire.
+
+    wire : number of the contact wire
+    ahead : [m] along the track of the strip before the pantograph's position
+    strip : the strip in its substructure; of an attached pantograph, none
+    wire_marker, strip_marker : of the two points in contact
+    rolls : whether the strip's point follows the wire sideways
+    connector : object, the contact's spring and damper
+    """
+
+    wire: int
+    ahead: float
+    strip: Strip | None
+    wire_marker: int
+    strip_marker: int
+    rolls: bool
+    connector: int
+
+
+@dataclass(frozen=True)
+class PantographParts:
+    """A pantograph.
+
+    record : what was described, or of attached bodies what results record
+    substructure : what was assembled; of attached bodies, none
+    bodies : objects; those that carry strips first
+    joints : objects, springs and dampers between bodies, or a body and the base
+    coordinates : node, and which of its coordinates, of each of the substructure's coordinates
+    loads : with each one's share in the uplift force
+    strips : position markers on the middles of the collector strips
+    contacts : each strip on each contact wire
+    masses : position markers whose heights results record
+    """
+
+    record: AnyPantograph
+    substructure: Substructure | None
+    bodies: list[int]
+    joints: list[int]
+    coordinates: list[tuple[int, int]]
+    loads: list[tuple[int, float]]
+    strips: list[int]
+    contacts: list[ContactParts]
+    masses: list[int]
+
+    def index(self, mbs: exu.MainSystem) -> Integers:
+        """Shape (coordinates,): numbers of its coordinates among those of the assembled system."""
+        numbers = [mbs.systemData.GetNodeLTGODE2(node)[which] for node, which in self.coordinates]
+        return np.array(numbers, dtype=np.int64)
+
+
+def add_pantograph(
+    mbs: exu.MainSystem,
+    system: System,
+    wires: Sequence[WireParts],
+    ground: int,
+    pantograph: AnyPantograph,
+) -> PantographParts:
+    """Add a pantograph as it assembles. Its weight is balanced by its frame."""
+    assembled, axes = pantograph.assemble(spatial=system.spatial), system.axes
+    nominal = system.contact_wire_height * np.eye(3)[axes - 1]
+    bodies, coordinates, roll_places = [], [], []
+    for body in assembled.bodies:
+        number, node = _add_body(mbs, body, nominal, ground)
+        bodies.append(number)
+        coordinates.append((node, 0 if body.inertia is None else _HEAVE))
+        if body.inertia is not None:
+            roll_places.append((node, _ROLL))
+    coordinates += roll_places
+    on = [_coordinate_marker(mbs, place) for place in coordinates]
+    loads = [
+        (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=0.0))), float(share))
+        for marker, share in zip(on, assembled.load, strict=True)
+        if share
+    ]
+    middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
+    strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]
+    law = _Law(mbs, axes - 1, assembled.contact)
+    contacts = []
+    for strip, middle in zip(assembled.strips, strips, strict=True):
+        rolls = strip.body in assembled.rolling  # then it meets each wire at another place
+        for wire in range(len(wires)):
+            marker = _strip_marker(mbs, bodies, strip, nominal) if rolls else middle
+            contacts.append(law.connect(wires, wire, strip.ahead, marker, strip, rolls=rolls))
+    return PantographParts(
+        record=pantograph,
+        substructure=assembled,
+        bodies=bodies,
+        joints=_add_joints(mbs, assembled, on, ground),
+        coordinates=coordinates,
+        loads=loads,
+        strips=strips,
+        contacts=contacts,
+        masses=[int(marker) for marker in middles],
+    )
+
+
+def add_own_pantograph(
+    mbs: exu.MainSystem,
+    wires: Sequence[WireParts],
+    record: AttachedPantograph,
+    strips: Sequence[tuple[int, float]],
+    masses: Sequence[int],
+) -> PantographParts:
+    """Add the contacts of bodies that are there already.
+
+    strips : position markers on the collector strips, and distances [m] ahead
+    masses : position markers whose heights results record
+    """
+    up = 1 if "2D" in mbs.GetObject(wires[0].elements[0])["objectType"] else 2
+    law = _Law(mbs, up, ContactLaw(record.contact_stiffness, record.contact_damping))
+    contacts = [
+        law.connect(wires, wire, float(ahead), int(marker), None, rolls=False)
+        for marker, ahead in strips
+        for wire in range(len(wires))
+    ]
+    markers = [int(marker) for marker, _ in strips]
+    return PantographParts(record, None, [], [], [], [], markers, contacts, [int(m) for m in masses])
+
+
+def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, ground: int) -> tuple[int, int]:
+    """Numbers of a point mass that heaves, or of a rigid body that heaves and rolls, and of its node."""
+    if body.inertia is None:
+        node = mbs.AddNode(eii.Node1D(referenceCoordinates=[0.0]))
+        up = int(nominal.argmax())
+        point = eii.ObjectMass1D(
+            mass=body.mass, nodeNumber=node, referencePosition=list(nominal), referenceRotation=_TO_UP[up]
+        )
+        return int(mbs.AddObject(point)), int(node)
+    node = mbs.AddNode(eii.NodeRigidBodyRxyz(referenceCoordinates=[*nominal, 0, 0, 0]))
+    inertia = [body.inertia] * 3 + [0.0] * 3
+    rigid = mbs.AddObject(eii.ObjectRigidBody(nodeNumber=node, mass=body.mass, inertia=inertia))
+    for which in {*range(6)} - {_HEAVE, _ROLL}:
+        markers = [ground, _coordinate_marker(mbs, (int(node), which))]
+        mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
+    return int(rigid), int(node)
+
+
+def _coordinate_marker(mbs: exu.MainSystem, place: tuple[int, int]) -> int:
+    node, which = place
+    return int(mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=which)))
+
+
+def _strip_marker(mbs: exu.MainSystem, bodies: list[int], strip: Strip, nominal: Floats) -> int:
+    """On the strip's body, or where there is none at the nominal contact wire height."""
+    if strip.body is not None:
+        return int(mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[strip.body])))
+    node = mbs.AddNode(eii.NodePointGround(referenceCoordinates=list(nominal)))
+    return int(mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=node)))
+
+
+def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], ground: int) -> list[int]:
+    """Springs and dampers between heights, and of bodies that roll against the level, on their lever."""
+    found = []
+    for joint in assembled.joints:
+        lower = ground if joint.lower == BASE else on[joint.lower]
+        springs = [(on[joint.upper], lower, 1.0)]
+        if joint.upper in assembled.rolling:
+            roll = on[len(assembled.bodies) + assembled.rolling.index(joint.upper)]
+            springs.append((roll, ground, joint.lever**2))
+        for upper, end, factor in springs:
+            spring = eii.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=[upper, end],
+                stiffness=joint.stiffness * factor,
+                damping=joint.damping * factor,
+            )
+            found.append(int(mbs.AddObject(spring)))
+    return found
+
+
+class _Law:
+    """The law of a pantograph's contacts, one function for all of them."""
+
+    def __init__(self, mbs: exu.MainSystem, up: int, law: ContactLaw) -> None:
+        self._mbs, self._law, self._function = mbs, law, push_only(mbs, up, law)
+        self._upright = np.eye(3)[up]
+
+    def connect(
+        self,
+        wires: Sequence[WireParts],
+        wire: int,
+        ahead: float,
+        strip_marker: int,
+        strip: Strip | None,
+        *,
+        rolls: bool,
+    ) -> ContactParts:
+        """Add the contact of a strip with a wire, which stands at the wire's begin until it is moved."""
+        first = wires[wire].elements[0]
+        on_wire = self._mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=first))
+        connector = eii.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[on_wire, strip_marker],
+            stiffness=list(self._law.stiffness * self._upright),
+            damping=list(self._law.damping * self._upright),
+            springForceUserFunction=self._function,
+        )
+        number = int(self._mbs.AddObject(connector))
+        return ContactParts(wire, ahead, strip, int(on_wire), strip_marker, rolls, number)
+
+
+class Contacts:
+    """Moves each pantograph's contacts along the wires, and reads them."""
+
+    def __init__(
+        self,
+        mbs: exu.MainSystem,
+        system: System,
+        wires: Sequence[WireParts],
+        pantographs: Sequence[PantographParts],
+    ) -> None:
+        self._mbs, self._wires, self._pantographs = mbs, wires, pantographs
+        self._paths, self._up = system.contact_paths, system.axes - 1
+
+    def move_to(self, positions: Sequence[float] | Floats, speed: float) -> None:
+        """Put the pantographs at these positions [m] along the track, shape (pantographs,), at a speed [m/s].
+
+        What depends on the wire's line at the contact, its inclination and where it lies across the track,
+        is taken from the current state: that is a time step late.
+        """
+        changed = False
+        for parts, position in zip(self._pantographs, positions, strict=True):
+            for contact in parts.contacts:
+                changed |= self._move(contact, float(position) + contact.ahead, speed)
+        if changed:
+            self._mbs.AssembleLTGLists()
+
+    def _move(self, contact: ContactParts, position: float, speed: float) -> bool:
+        """True if the contact is on another element than before."""
+        mbs, path = self._mbs, self._paths[contact.wire]
+        e, _ = path.at(position)
+        local = float((position - path.x[e]) / (path.x[e + 1] - path.x[e]) * path.lengths[e])
+        element, place = self._wires[contact.wire].elements[e], [local, 0, 0]
+        changed = bool(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber") != element)
+        if changed:
+            mbs.SetMarkerParameter(contact.wire_marker, "bodyNumber", element)
+        mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
+        if contact.rolls:
+            lateral = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Position, place)[1]
+            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [0, float(lateral), 0])
+        damping = list(mbs.GetObjectParameter(contact.connector, "damping"))
+        if damping[self._up]:
+            slope = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Director1, place)
+            damping[0] = speed * float(slope[self._up] / slope[0])
+            mbs.SetObjectParameter(contact.connector, "damping", damping)
+        return changed
+
+    def force(self, contact: ContactParts) -> float:
+        """[N] upward on the wire at the current state."""
+        return float(self._mbs.GetObjectOutput(contact.connector, exu.OutputVariableType.Force)[self._up])
+
+    def height(self, marker: int) -> float:
+        """[m] of a position marker at the current state."""
+        return float(self._mbs.GetMarkerOutput(marker, exu.OutputVariableType.Position)[self._up])
+
+    def lateral(self, contact: ContactParts) -> float:
+        """[m] to the left of the middle of a strip that rolls, where the contact is on it."""
+        if not contact.rolls:
+            return 0.0
+        return float(self._mbs.GetMarkerParameter(contact.strip_marker, "localPosition")[1])
