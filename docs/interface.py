@@ -27,7 +27,7 @@ _MODULE = re.compile(r"\b(?:np|xr|cf)\.(?=[A-Z])")
 
 def list_parameters(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
     """Our docstrings write ``speed : [m/s] of the train``, one line or more each: make them a list."""
-    written = [_escaped(line) for line in _without_sections(lines)]
+    written = [_escaped(line) for line in lines]
     if _is_model(obj):
         written += ["", *_fields(obj)]
     lines.clear()
@@ -41,25 +41,6 @@ def list_parameters(app: Any, what: str, name: str, obj: Any, options: Any, line
             lines.append("  " + line.strip())
         else:
             lines.append(line)
-
-
-def _without_sections(lines: list[str]) -> list[str]:
-    """Docstrings with the headings Parameters, Returns, Raises, written as those without."""
-    text = "\n".join(lines)
-    text = re.sub(r"\nParameters\n-+\n", "\n", text)
-    text = re.sub(r"\nReturns\n-+\n\w+\n +", "\nReturns ", text)
-    text = re.sub(r"\nRaises\n-+\n(\w+)\n +", r"\nRaises \1: ", text)
-    lines = text.split("\n")
-    for i, line in enumerate(lines):
-        if line.startswith("    ") and re.match(r"R(eturns|aises) ", _paragraph_start(lines, i)):
-            lines[i] = line.strip()
-    return lines
-
-
-def _paragraph_start(lines: list[str], i: int) -> str:
-    while i and lines[i - 1]:
-        i -= 1
-    return lines[i]
 
 
 def _escaped(line: str) -> str:

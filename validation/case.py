@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from validation.check import Check
 
-TWIN = 1.01  # of a parameter in a case's twin: 1 % off
+PERTURBED = 1.01  # of a parameter in a case's negative control: 1 % off
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,10 +21,10 @@ class Case:
     kind : 'verification' against closed forms, 'validation' against published results
     title : one line for the report
     text : what was found, for the report
-    off : what is wrong in the case's twin
-    compute : makes the data, which the twin shares; its argument asks for the quick variant
-    compare : makes the checks from the data; ``slip`` is 1, or 1.01 for the twin: a factor on one parameter
-        of the reference, or, where ``off`` says so, a sign to take something else
+    off : what is wrong in the case's negative control
+    compute : makes the data, which the negative control shares; its argument asks for the quick variant
+    compare : makes the checks from the data; ``perturbation`` is 1, or 1.01 for the negative control: a
+        factor on one parameter of the reference, or, where ``off`` says so, a sign to take something else
     draw : draws the data
     quick : part of a quick run
     """
@@ -39,9 +39,9 @@ class Case:
     draw: Callable[[Any, Figure], None]
     quick: bool = True
 
-    def checks(self, data: Any, *, twin: bool = False) -> list[Check]:
-        """Compare the data with the reference, or with the twin's wrong one."""
-        found = self.compare(data, TWIN if twin else 1.0)
+    def checks(self, data: Any, *, negative_control: bool = False) -> list[Check]:
+        """Compare the data with the reference, or with the negative control's wrong one."""
+        found = self.compare(data, PERTURBED if negative_control else 1.0)
         return [replace(check, case=self.name) for check in found]
 
 

@@ -22,7 +22,7 @@ class Check:
     source : of the reference
     passed : None where the reference is too unsure to judge by, or there is none: shown, not counted
     reason : why the tolerance is what it is, in one sentence
-    twin : the case's twin, wrong on purpose, must fail this check
+    negative_control : that of the case, wrong on purpose, must fail this check
     """
 
     case: str = ""
@@ -35,7 +35,7 @@ class Check:
     passed: bool | None
     unit: str = ""
     reason: str
-    twin: bool = True
+    negative_control: bool = True
 
 
 def compare(
@@ -48,7 +48,7 @@ def compare(
     reason: str,
     unit: str = "",
     absolute: bool = False,
-    twin: bool = True,
+    negative_control: bool = True,
 ) -> Check:
     """Check a number; ``absolute``: the error is the difference itself, not its share of the reference."""
     error = abs(computed - reference) / (1.0 if absolute else abs(reference))
@@ -62,7 +62,7 @@ def compare(
         passed=bool(error <= tolerance),
         unit=unit,
         reason=reason,
-        twin=twin,
+        negative_control=negative_control,
     )
 
 
@@ -76,7 +76,7 @@ def compare_curves(
     source: str,
     reason: str,
     unit: str = "",
-    twin: bool = True,
+    negative_control: bool = True,
 ) -> Check:
     """Check a curve over ``x``: root mean square of the difference over that of the reference."""
     x, computed, reference = (np.asarray(values, dtype=float) for values in (x, computed, reference))
@@ -91,7 +91,7 @@ def compare_curves(
         passed=bool(error <= tolerance),
         unit=unit,
         reason=reason,
-        twin=twin,
+        negative_control=negative_control,
     )
 
 

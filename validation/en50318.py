@@ -94,7 +94,7 @@ def _range_check(name: str, unit: str, value: float, limits: tuple[float, float]
         source=SOURCE,
         passed=outside == 0.0,
         reason=REASON,
-        twin=name in APART,
+        negative_control=name in APART,
     )
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,15 +14,15 @@ from catenary_fe.layout import Wire
 Floats = NDArray[np.float64]
 
 TENSION, MASS, FORCE = 20e3, 1.33, 200.0  # N, kg/m, N
-STRING: dict[str, Any] = {"tension": TENSION, "mass_per_length": MASS}
-C = theory.wave_speed(**STRING)  # 122.6 m/s
+STRING = theory.String(tension=TENSION, mass_per_length=MASS)
+C = STRING.wave_speed  # 122.6 m/s
 AXIAL_STIFFNESS = 1.7e7  # N, of 150 mm² copper: the paper names none
 PAPER = 'paper, "Selected problems of wave phenomena in catenaries"'
 
 
 def wire(bending_stiffness: float = 0.0, **changed: float) -> Wire:
     """The paper's wire; a string unless it is given a bending stiffness."""
-    values = {**STRING, "axial_stiffness": AXIAL_STIFFNESS, **changed}
+    values = {"tension": TENSION, "mass_per_length": MASS, "axial_stiffness": AXIAL_STIFFNESS, **changed}
     return Wire(bending_stiffness=bending_stiffness, **values)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from catenary_fe.results.files import write_text, written_aside
+from catenary_fe.results.files import atomic_write, write_text
 from validation.case import Case
 from validation.cases import CASES
 from validation.check import NO_REFERENCE, Check
@@ -19,9 +19,9 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
-a curve, it is the root mean square of the difference over that of the reference. Each case has a twin, wrong
-on purpose by what its last line names, which the tests run and which must fail. *Inside* and *outside* stand
-where a reference was recalled and not read: shown, not counted.
+a curve, it is the root mean square of the difference over that of the reference. Each case has a negative
+control, wrong on purpose by what its last line names, which the tests run and which must fail. *Inside* and
+*outside* stand where a reference was recalled and not read: shown, not counted.
 """
 _HEADINGS = {"verification": "Verification", "validation": "Validation"}
 
@@ -32,7 +32,7 @@ def write_report(checks: Sequence[Check], path: Path | str) -> Path:
     pictures: dict[str, bytes] = getattr(checks, "pictures", {})
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     for name, picture in pictures.items():
-        with written_aside(folder / "pictures" / f"{name}.png") as aside:
+        with atomic_write(folder / "pictures" / f"{name}.png") as aside:
             aside.write_bytes(picture)
     report = folder / "REPORT.md"
     write_text(report, report_text(checks, set(pictures)))
@@ -68,7 +68,7 @@ def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
     reasons = list(dict.fromkeys(check.reason for check in checks))
     lines += ["", *(f"- Tolerance: {reason}" for reason in reasons)]
     lines += [f"- Reference: {source}" for source in sources]
-    lines += [f"- Twin: {case.off}", ""]
+    lines += [f"- Negative control: {case.off}", ""]
     if picture:
         lines += [f"![{case.title}](pictures/{case.name}.png)\n"]
     return "\n".join(lines)

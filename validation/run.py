@@ -40,22 +40,22 @@ def run_cases(
     return _run(_chosen(names, quick), quick, jobs, draw, False, progress)
 
 
-def run_twins(
+def run_negative_controls(
     names: Sequence[str] | None = None,
     *,
     quick: bool = False,
     jobs: int = 1,
     progress: Progress | None = None,
 ) -> Checks:
-    """Run each case's twin, wrong on purpose: checks that are marked ``twin`` must not pass."""
+    """Run each case's negative control, wrong on purpose: checks marked so must not pass."""
     return _run(_chosen(names, quick), quick, jobs, False, True, progress)
 
 
-def run_case(name: str, quick: bool, draw: bool, twin: bool) -> Outcome:
-    """Run one case, or its twin."""
+def run_case(name: str, quick: bool, draw: bool, negative_control: bool) -> Outcome:
+    """Run one case, or its negative control."""
     case = CASES[name]
     data = _computed(name, quick)
-    checks = case.checks(data, twin=twin)
+    checks = case.checks(data, negative_control=negative_control)
     if not draw:
         return Outcome(checks)
     figure = Figure(figsize=(8, 4.5), layout="constrained")
@@ -67,7 +67,7 @@ def run_case(name: str, quick: bool, draw: bool, twin: bool) -> Outcome:
 
 @lru_cache(maxsize=8)
 def _computed(name: str, quick: bool) -> Any:
-    """A case and its twin share what costs time."""
+    """A case and its negative control share what costs time."""
     return CASES[name].compute(quick)
 
 
@@ -81,10 +81,10 @@ def _chosen(names: Sequence[str] | None, quick: bool) -> list[str]:
 
 
 def _run(
-    names: list[str], quick: bool, jobs: int, draw: bool, twin: bool, progress: Progress | None
+    names: list[str], quick: bool, jobs: int, draw: bool, negative_control: bool, progress: Progress | None
 ) -> Checks:
     outcomes: dict[str, Outcome] = {}
-    for name, outcome in _outcomes(names, quick, jobs, draw, twin):
+    for name, outcome in _outcomes(names, quick, jobs, draw, negative_control):
         outcomes[name] = outcome
         if progress:
             progress(len(outcomes) / len(names))
@@ -93,14 +93,16 @@ def _run(
 
 
 def _outcomes(
-    names: list[str], quick: bool, jobs: int, draw: bool, twin: bool
+    names: list[str], quick: bool, jobs: int, draw: bool, negative_control: bool
 ) -> Iterator[tuple[str, Outcome]]:
     if jobs == 1 or len(names) == 1:
         for name in names:
-            yield name, run_case(name, quick, draw, twin)
+            yield name, run_case(name, quick, draw, negative_control)
         return
     # the longest cases are the last of the registry: begin with them
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        running = {pool.submit(run_case, name, quick, draw, twin): name for name in reversed(names)}
+        running = {
+            pool.submit(run_case, name, quick, draw, negative_control): name for name in reversed(names)
+        }
         for future in as_completed(running):
             yield running[future], future.result()

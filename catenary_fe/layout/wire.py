@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Literal
 
 from catenary_fe.layout.parameters import NonNegative, Number, Parameters, Positive, Text
+from catenary_fe.theory import Beam
 
 
 class Wire(Parameters):
@@ -25,14 +25,23 @@ class Wire(Parameters):
     """where the numbers come from, and how sure they are"""
 
     @property
+    def beam(self) -> Beam:
+        """The wire as the closed forms of `catenary_fe.theory` take it."""
+        return Beam(
+            tension=self.tension,
+            mass_per_length=self.mass_per_length,
+            bending_stiffness=self.bending_stiffness,
+        )
+
+    @property
     def wave_speed(self) -> float:
         """[m/s] of transverse waves, √(T/ρ)."""
-        return sqrt(self.tension / self.mass_per_length)
+        return self.beam.wave_speed
 
     @property
     def impedance(self) -> float:
         """[N s/m] √(T ρ), force over velocity of a wave running one way."""
-        return sqrt(self.tension * self.mass_per_length)
+        return self.beam.impedance
 
 
 class Dropper(Parameters):

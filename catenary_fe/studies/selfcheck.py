@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -85,7 +84,7 @@ def _point_force() -> Iterator[SelfCheck]:
     x = graded_nodes([0, length], 0.5, kinks=[place], finest=0.005)
     load = theory.MovingForce(force=_FORCE, speed=0.0, start=place)
     u = wire_at_rest(WireProblem(wire=_wire(), x=x, loads=[load]))
-    exact = _FORCE * place * (length - place) / (_TENSION * length)
+    exact = float(theory.static_deflection(_wire().beam, place, length=length, position=place, force=_FORCE))
     under = float(u[int(np.abs(x - place).argmin())])
     yield SelfCheck("deflection under a force", under, exact, "m", 1e-4, "statics of a string, F a b/(T L)")
 
@@ -99,9 +98,7 @@ def _frequencies() -> Iterator[SelfCheck]:
     K, M = vertical_matrices(WireProblem(wire=_wire(bending), x=even_nodes([0, length], 1.0)))
     K = (K + K.T) / 2
     values = eigsh(K.tocsc(), 10, M.tocsc(), sigma=0.0, v0=np.ones(K.shape[0]), return_eigenvectors=False)
-    exact = theory.natural_frequencies(
-        10, tension=_TENSION, mass_per_length=_MASS, length=length, bending_stiffness=bending
-    )
+    exact = theory.natural_frequencies(_wire(bending).beam, 10, length=length)
     for n in (0, 9):
         found, wanted = np.sqrt(np.sort(values)[n]) / (2 * np.pi), exact[n] / (2 * np.pi)
         name = f"natural frequency {n + 1} of a wire"
@@ -111,8 +108,8 @@ def _frequencies() -> Iterator[SelfCheck]:
 def _moving_force() -> Iterator[SelfCheck]:
     from catenary_fe.engines.exudyn.wire_run import run_wire
 
-    string: dict[str, Any] = {"tension": _TENSION, "mass_per_length": _MASS}
-    c, duration = theory.wave_speed(**string), 0.2
+    string, duration = _wire().beam, 0.2
+    c = string.wave_speed
     speed = 0.725 * c
     load = theory.MovingForce(force=_FORCE, speed=speed)
     x = even_nodes([-c * duration - 5, 0.0, c * duration + 5], 0.5)
@@ -120,7 +117,7 @@ def _moving_force() -> Iterator[SelfCheck]:
     motion = run_wire(
         problem, duration=duration, time=TimeSettings(step=5e-4, tolerance=1e-6), interval=duration
     )
-    exact = theory.moving_force(motion.x, duration, **string, speed=speed, force=_FORCE)
+    exact = theory.moving_force(string, motion.x, duration, speed=speed, force=_FORCE)
     behind = int(np.abs(motion.x).argmin())
     source = "d'Alembert, paper eq. 4"
     name = "deflection behind a moving force"

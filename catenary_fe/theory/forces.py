@@ -1,33 +1,34 @@
-"""Force histories F(t) of a pantograph: constant, harmonic, or any function of time."""
+"""Forces of a pantograph on a wire: histories F(t), and loads that move along it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from catenary_fe.theory._checks import FloatArray, finite, non_negative
-from catenary_fe.theory._quadrature import Function, antiderivative
+from catenary_fe.theory._numerics import (
+    FloatArray,
+    Function,
+    antiderivative,
+    finite,
+    non_negative,
+    refuse,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HarmonicForce:
     """F(t) = F_m + F_d sin(Ω t + φ), with φ = 0 the pantograph's force in the paper (text above eq. 6).
 
-    Parameters
-    ----------
     mean : [N] F_m, positive upwards
     amplitude : [N] F_d
     angular_frequency : [rad/s] Ω, not negative
     phase : [rad] φ
 
-    Raises
-    ------
-    ValueError
-        A value is not finite, or the frequency is negative.
+    Raises ValueError for a value out of its range.
     """
 
     mean: float
@@ -42,12 +43,12 @@ class HarmonicForce:
         finite("phase", self.phase, "rad")
 
     def __call__(self, t: ArrayLike) -> FloatArray:
-        """Return the force [N] at the times t [s]."""
+        """[N] at the times t [s]."""
         time = np.asarray(t, dtype=np.float64)
         return np.asarray(self.mean + self.amplitude * np.sin(self.angular_frequency * time + self.phase))
 
     def impulse(self, t: ArrayLike) -> FloatArray:
-        """Return ∫ F from 0 to t [N s]; regular as Ω → 0."""
+        """[N s] ∫ F from 0 to t; regular as Ω → 0."""
         time = np.asarray(t, dtype=np.float64)
         half_angle = 0.5 * self.angular_frequency * time
         # [cos φ − cos(Ωt + φ)]/Ω written without the difference of near equals and without dividing by Ω
@@ -55,38 +56,110 @@ class HarmonicForce:
         return np.asarray(self.mean * time + self.amplitude * wave)
 
     def later(self, delay: float) -> HarmonicForce:
-        """Return the same force on a clock that starts `delay` [s] later."""
+        """The same force on a clock that starts `delay` [s] later."""
         return replace(self, phase=self.phase + self.angular_frequency * delay)
 
 
 Force: TypeAlias = float | HarmonicForce | Function
-Impulse: TypeAlias = Callable[[FloatArray], FloatArray]
 
 
 def force_values(force: Force, t: ArrayLike) -> FloatArray:
-    """Return F(t) [N] in the shape of t [s]."""
+    """[N] F(t) in the shape of t [s]."""
     time = np.asarray(t, dtype=np.float64)
     if callable(force):
         return np.broadcast_to(np.asarray(force(time), dtype=np.float64), time.shape)
     return np.full(time.shape, finite("force", force, "N"))
 
 
-def as_harmonic(force: Force) -> HarmonicForce | None:
-    """Return the force as a harmonic one if it is constant or harmonic, else None."""
+def as_harmonic(force: Force) -> HarmonicForce:
+    """A constant or harmonic force as a harmonic one; any other is refused."""
     if isinstance(force, HarmonicForce):
         return force
-    return None if callable(force) else HarmonicForce(mean=finite("force", force, "N"))
+    if callable(force):
+        rule = "must be constant or harmonic for this closed form"
+        raise refuse("force", force, rule, "pass a number or a HarmonicForce, or use images")
+    return HarmonicForce(mean=finite("force", force, "N"))
 
 
 def impulse_function(
     force: Force, until: float, *, impulse: Function | None = None, breakpoints: Sequence[float] = ()
-) -> Impulse:
-    """Return t ↦ ∫ F from 0 to t: the given one, the closed one, or one by quadrature on 0 ≤ t ≤ `until`."""
+) -> Callable[[FloatArray], FloatArray]:
+    """t ↦ ∫ F from 0 to t [N s]: as given, in closed form, or by quadrature on 0 ≤ t ≤ ``until``."""
     if impulse is not None:
         given = impulse
         return lambda t: np.asarray(given(t), dtype=np.float64)
-    harmonic = as_harmonic(force)
-    if harmonic is not None:
-        return harmonic.impulse
-    assert callable(force)
-    return antiderivative(force, 0.0, until, breakpoints=breakpoints)
+    if callable(force) and not isinstance(force, HarmonicForce):
+        return antiderivative(force, 0.0, until, breakpoints=breakpoints)
+    return as_harmonic(force).impulse
+
+
+class MovingLoad(Protocol):
+    """What pushes the wire at start + speed · t."""
+
+    @property
+    def start(self) -> float: ...
+
+    @property
+    def speed(self) -> float: ...
+
+    def contact_force(self, t: float, deflection: float) -> float:
+        """[N] upwards on the wire at time t [s], given the deflection there [m]."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingForce:
+    """A force known in advance, moving along the wire (eq. 5).
+
+    force : [N] positive upwards: a number, a `HarmonicForce`, or a function of an array of times
+    speed : [m/s] not negative
+    start : [m] where it is at t = 0; it acts only while it is on the wire
+
+    Raises ValueError for a negative speed.
+    """
+
+    force: Force
+    speed: float
+    start: float = 0.0
+
+    def __post_init__(self) -> None:
+        non_negative("speed", self.speed, "m/s")
+
+    def contact_force(self, t: float, deflection: float) -> float:
+        """[N] F(t), whatever the deflection."""
+        return float(force_values(self.force, t))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticPantograph:
+    """A pantograph whose contact force depends on the wire's deflection above it and never pulls.
+
+    F = max(0, law(u)). Source: paper, section 3.1 (fig. 12), which leaves the law open.
+
+    law : [N] force as a function of the deflection [m]; `linear_law` makes the usual one
+    speed : [m/s] not negative
+    start : [m] where it is at t = 0; it acts only while it is on the wire
+
+    Raises ValueError for a negative speed.
+    """
+
+    law: Callable[[float], float]
+    speed: float
+    start: float = 0.0
+
+    def __post_init__(self) -> None:
+        non_negative("speed", self.speed, "m/s")
+
+    def contact_force(self, t: float, deflection: float) -> float:
+        """[N] max(0, law(deflection))."""
+        return max(0.0, float(self.law(deflection)))
+
+
+def linear_law(*, force: float, stiffness: float) -> Callable[[float], float]:
+    """F₀ − k u [N] as a function of the deflection u [m]: a force that falls as the wire rises.
+
+    force : [N] F₀ on the undeflected wire
+    stiffness : [N/m] k, not negative
+    """
+    slackening = non_negative("stiffness", stiffness, "N/m")
+    return lambda deflection: force - slackening * deflection

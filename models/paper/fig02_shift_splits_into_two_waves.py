@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from paper_common import C, Floats, Numbers, difference, paper_wire, publish, run_script
+from paper_common import STRING, C, Floats, Numbers, difference, paper_wire, publish, run_script
 
 import catenary_fe as cf
 from catenary_fe import theory
@@ -32,7 +32,7 @@ def main(folder: Path) -> Numbers:
     time = cf.TimeSettings(step=2.5e-4, tolerance=1e-6)
     motion = cf.run_wire(problem, duration=TIMES[-1], time=time, interval=0.01)
     x = motion.x
-    exact = {t: theory.running_waves(x, t, wave_speed=C, initial_deflection=shift) for t in TIMES}
+    exact = {t: theory.running_waves(STRING, x, t, initial_deflection=shift) for t in TIMES}
     off = [difference(x, motion.at(t), exact[t]) for t in TIMES]
     right = x > 0
     place = x[right][motion.at(TIMES[-1])[right].argmax()]

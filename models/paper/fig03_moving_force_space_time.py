@@ -35,7 +35,7 @@ from catenary_fe.views import plot_space_time, plot_surface
 
 def main(folder: Path) -> Numbers:
     motion = run_force(cf.even_nodes(undisturbed_ends(SPEED), 0.25), speed=SPEED)
-    exact = theory.moving_force(motion.x, motion.t[:, None], **STRING, speed=SPEED, force=FORCE)
+    exact = theory.moving_force(STRING, motion.x, motion.t[:, None], speed=SPEED, force=FORCE)
     off = [difference(motion.x, u, e) for u, e in zip(motion.deflection[1:], exact[1:], strict=True)]
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     grid = figure.add_gridspec(2, 2)

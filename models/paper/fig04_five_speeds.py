@@ -42,7 +42,7 @@ def main(folder: Path) -> Numbers:
         x = cf.even_nodes(undisturbed_ends(ratio * C), 0.25)
         motion = run_force(x, speed=ratio * C, force=share * FORCE, interval=DURATION)
         computed = motion.at(DURATION) / share
-        exact = theory.moving_force(x, DURATION, **STRING, speed=ratio * C, force=FORCE)
+        exact = theory.moving_force(STRING, x, DURATION, speed=ratio * C, force=FORCE)
         away = np.abs(x - C * DURATION) > 2.0 if ratio == 1.0 else np.ones(x.size, dtype=bool)
         off = difference(x[away], computed[away], exact[away])
         numbers[f"difference at V = {ratio:g} c (%)"] = 100 * off

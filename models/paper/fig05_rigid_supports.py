@@ -43,7 +43,7 @@ def main(folder: Path) -> Numbers:
     usual = cf.even_nodes(SUPPORTS, 0.125)
     whole = run_force(usual, speed=SPEED, supports=inner, step=2.5e-4, interval=2.5e-3)
     exact = theory.moving_force_on_supports(
-        light.x, light.t[:, None], **STRING, supports=SUPPORTS, speed=SPEED, force=FORCE
+        STRING, light.x, light.t[:, None], supports=SUPPORTS, speed=SPEED, force=FORCE
     )
     at = [int(np.abs(light.t - t).argmin()) for t in TIMES]
     off = [difference(light.x, light.deflection[i] / LIGHT, exact[i]) for i in at]

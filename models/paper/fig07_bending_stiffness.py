@@ -23,6 +23,7 @@ from paper_common import (
     C,
     Numbers,
     difference,
+    paper_wire,
     publish,
     run_force,
     run_script,
@@ -41,9 +42,8 @@ def main(folder: Path) -> Numbers:
         cf.even_nodes([ENDS[0], 0.0, ENDS[1]], 0.25), speed=SPEED, bending_stiffness=STIFF, step=2.5e-4
     )
     lines = theory.solve_by_lines(
+        paper_wire(STIFF).beam,
         [DURATION],
-        **STRING,
-        bending_stiffness=STIFF,
         ends=ENDS,
         intervals=1100,
         loads=[theory.MovingForce(force=FORCE, speed=SPEED)],
@@ -62,7 +62,7 @@ def main(folder: Path) -> Numbers:
         title="ANCF, S = 200 kN m²: waves run ahead of the string's front",
         ax=top,
     )
-    string = theory.moving_force(x, DURATION, **STRING, speed=SPEED, force=FORCE)
+    string = theory.moving_force(STRING, x, DURATION, speed=SPEED, force=FORCE)
     for ax in (middle, bottom):
         ax.plot(x, 1e3 * last, **COMPUTED, label="ANCF")
         ax.plot(lines.x, 1e3 * lines.deflection[-1], **REFERENCE, label="method of lines")

@@ -20,11 +20,11 @@ from paper_common import (
     REFERENCE,
     SPEED,
     STIFF,
-    STRING,
     C,
     Floats,
     Numbers,
     difference,
+    paper_wire,
     publish,
     run_force,
     run_script,
@@ -52,9 +52,8 @@ def by_lines(x: Floats, supports: Floats, speed: float) -> Floats:
     found = []
     for interval in (0.2, 0.1):
         lines = theory.solve_by_lines(
+            paper_wire(STIFF).beam,
             [DURATION],
-            **STRING,
-            bending_stiffness=STIFF,
             ends=ENDS,
             intervals=round((ENDS[1] - ENDS[0]) / interval),
             supports=supports,

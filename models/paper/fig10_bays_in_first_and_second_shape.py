@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from paper_common import STRING, Numbers, paper_shape, publish, run_script
+from paper_common import Numbers, paper_shape, paper_wire, publish, run_script
 
 import catenary_fe as cf
 from catenary_fe import theory
@@ -28,7 +28,7 @@ def main(folder: Path) -> Numbers:
     modes = cf.solve_modes(paper_shape(cf.MeshSettings().halved()), below=20.0)
     kinds, wanted = modes.kinds(), {1: "medium", 2: "elevated"}
     bay = 8.0
-    alone = theory.natural_frequencies(2, **STRING, length=bay, bending_stiffness=195.0) / (2 * np.pi)
+    alone = theory.natural_frequencies(paper_wire(195.0).beam, 2, length=bay) / (2 * np.pi)
     figure = Figure(figsize=(11.0, 6.4), layout="constrained")
     numbers: Numbers = {}
     for ax, (shape, name) in zip(figure.subplots(2, 1), wanted.items(), strict=True):

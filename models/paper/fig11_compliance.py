@@ -13,7 +13,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from paper_common import COMPUTED, COPPER, STRING, TENSION, Floats, Numbers, paper_shape, publish, run_script
+from paper_common import (
+    COMPUTED,
+    COPPER,
+    TENSION,
+    Floats,
+    Numbers,
+    paper_shape,
+    paper_wire,
+    publish,
+    run_script,
+)
 
 import catenary_fe as cf
 from catenary_fe import theory
@@ -32,8 +42,8 @@ def nodes_of_span(shape: cf.Shape) -> Floats:
 
 def above(cut_off: float) -> float:
     """[m/N] share of the modes above a cut-off [Hz] in the compliance, as on an infinite wire."""
-    k = float(theory.wavenumber(2 * np.pi * cut_off, **STRING, bending_stiffness=COPPER))
-    layer = theory.boundary_layer_length(tension=TENSION, bending_stiffness=COPPER)
+    beam = paper_wire(COPPER).beam
+    k, layer = float(theory.wavenumber(beam, 2 * np.pi * cut_off)), beam.boundary_layer_length
     return (1 / k - layer * (np.pi / 2 - np.arctan(layer * k))) / (np.pi * TENSION)
 
 

@@ -54,9 +54,7 @@ def run_both(bending: float, pantograph: cf.ElasticPantograph) -> tuple[cf.WireM
         wire=paper_wire(bending), x=cf.even_nodes([ENDS[0], 0.0, ENDS[1]], 0.25), loads=[load]
     )
     motion = cf.run_wire(problem, duration=DURATION, interval=2.5e-3)
-    lines = theory.solve_by_lines(
-        motion.t, **STRING, bending_stiffness=bending, ends=ENDS, intervals=1760, loads=[load]
-    )
+    lines = theory.solve_by_lines(paper_wire(bending).beam, motion.t, ends=ENDS, intervals=1760, loads=[load])
     return motion, lines.forces[:, 0]
 
 
@@ -74,7 +72,7 @@ def main(folder: Path) -> Numbers:
         below.plot(motion.t, by_lines, **REFERENCE, label="method of lines")
         if name == "string, linear law":
             exact = theory.elastic_pantograph_force(
-                motion.t, **STRING, speed=SPEED, force=FORCE, stiffness=SLACKENING
+                STRING, motion.t, speed=SPEED, force=FORCE, stiffness=SLACKENING
             )
             below.plot(motion.t[::10], exact[::10], "ko", markersize=3, fillstyle="none", label="closed form")
             numbers["difference to the closed form, string (%)"] = 100 * difference(motion.t, force, exact)

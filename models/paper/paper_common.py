@@ -10,7 +10,6 @@ import json
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,14 +17,14 @@ from numpy.typing import NDArray
 
 import catenary_fe as cf
 from catenary_fe import theory
-from catenary_fe.results.files import write_text, written_aside
+from catenary_fe.results.files import atomic_write, write_text
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, float]
 
 TENSION, MASS, FORCE = 20e3, 1.33, 200.0  # N, kg/m, N
-STRING: dict[str, Any] = {"tension": TENSION, "mass_per_length": MASS}
-C = theory.wave_speed(**STRING)  # 122.6 m/s
+STRING = theory.String(tension=TENSION, mass_per_length=MASS)
+C = STRING.wave_speed  # 122.6 m/s
 SPEED = 320 / 3.6  # m/s, 0.725 c; the text rounds to 0.75 c
 DURATION = 0.5  # s
 STIFF = 200e3  # N m², the "considerable" bending stiffness of fig. 7
@@ -40,7 +39,12 @@ REFERENCE = {"color": "black", "linewidth": 0.9, "linestyle": "--"}
 
 def paper_wire(bending_stiffness: float = 0.0) -> cf.Wire:
     """The paper's wire; a string unless it is given a bending stiffness [N m²]."""
-    return cf.Wire(**STRING, axial_stiffness=AXIAL_STIFFNESS, bending_stiffness=bending_stiffness)
+    return cf.Wire(
+        tension=TENSION,
+        mass_per_length=MASS,
+        axial_stiffness=AXIAL_STIFFNESS,
+        bending_stiffness=bending_stiffness,
+    )
 
 
 def run_force(
@@ -111,7 +115,7 @@ def publish(folder: Path | str, script: str, figure: Figure, caption: str, numbe
     """Write the picture, and beside it a JSON file with caption and numbers; returns the numbers."""
     folder, name = Path(folder), Path(script).stem
     folder.mkdir(parents=True, exist_ok=True)
-    with written_aside(folder / f"{name}.png") as aside:
+    with atomic_write(folder / f"{name}.png") as aside:
         figure.savefig(aside, dpi=130, metadata={"Software": None})
     facts = {"caption": caption, "numbers": {key: float(value) for key, value in numbers.items()}}
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"

@@ -21,6 +21,7 @@ from paper_common import (
     Floats,
     Numbers,
     difference,
+    paper_wire,
     publish,
     run_force,
     run_script,
@@ -36,9 +37,8 @@ ENDS = (-90.0, 140.0)  # m
 
 def by_lines(x: Floats, bending: float) -> Floats:
     lines = theory.solve_by_lines(
+        paper_wire(bending).beam,
         [DURATION],
-        **STRING,
-        bending_stiffness=bending,
         ends=ENDS,
         intervals=1150,
         loads=[theory.MovingForce(force=FORCE, speed=C)],
@@ -50,7 +50,7 @@ def main(folder: Path) -> Numbers:
     figure = Figure(figsize=(10.0, 7.5), layout="constrained")
     shapes, under = figure.subplots(2, 1, height_ratios=[1.4, 1])
     x = cf.even_nodes([ENDS[0], 0.0, ENDS[1]], 0.25)
-    string = theory.moving_force(x, DURATION, **STRING, speed=C, force=FORCE)
+    string = theory.moving_force(STRING, x, DURATION, speed=C, force=FORCE)
     shapes.plot(x, 1e3 * string, "k--", linewidth=0.9, label="string, closed form")
     numbers: Numbers = {}
     for bending, colour in BENDING.items():

@@ -5,7 +5,7 @@ Parameters: the paper's wire (20 kN, 1.33 kg/m) without supports after 0.5 s; on
 first ten bays; the contact wire of the two-wire system of fig. 6, spans 3 to 6. A constant force; the answers
 are linear in it and are given per newton.
 Model: closed forms for the single wire; for the two-wire system the sum of all modes up to 100 Hz, and
-nonlinear ANCF runs up to 1.25 c (50 N keep the droppers taut; faster ones the program takes for a slip of
+nonlinear ANCF runs up to 1.25 c (50 N keep the droppers taut; faster ones the program takes for a mistake in
 units).
 """
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from paper_common import DURATION, MASS, STRING, C, Floats, Numbers, paper_shape, publish, run_script
+from paper_common import DURATION, MASS, STRING, TENSION, C, Floats, Numbers, paper_shape, publish, run_script
 
 import catenary_fe as cf
 from catenary_fe import theory
@@ -29,18 +29,16 @@ SUPPORTS = np.arange(0.0, 61.0, 6.0)
 def free(ratio: float) -> float:
     """[m/N] largest deflection after the paper's 0.5 s."""
     x = np.linspace(-C * DURATION, max(1.0, ratio) * C * DURATION, 2001)
-    return float(theory.moving_force(x, DURATION, **STRING, speed=ratio * C, force=1.0).max())
+    return float(theory.moving_force(STRING, x, DURATION, speed=ratio * C, force=1.0).max())
 
 
 def supported(ratio: float) -> float:
     """[m/N] largest deflection while the force runs over ten bays."""
     if ratio == 0.0:
-        return float((SUPPORTS[1] - SUPPORTS[0]) / (4 * STRING["tension"]))  # at rest in the middle of a bay
+        return float((SUPPORTS[1] - SUPPORTS[0]) / (4 * TENSION))  # at rest in the middle of a bay
     t = np.linspace(0.0, SUPPORTS[-1] / (ratio * C), 1200)
     x = np.linspace(SUPPORTS[0], SUPPORTS[-1], 241)
-    u = theory.moving_force_on_supports(
-        x, t[:, None], **STRING, supports=SUPPORTS, speed=ratio * C, force=1.0
-    )
+    u = theory.moving_force_on_supports(STRING, x, t[:, None], supports=SUPPORTS, speed=ratio * C, force=1.0)
     return float(np.abs(u).max())
 
 

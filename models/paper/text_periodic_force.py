@@ -44,10 +44,8 @@ def main(folder: Path) -> Numbers:
     )
     motion = cf.run_wire(problem, duration=DURATION)
     x, t = motion.x, motion.t
-    exact = theory.moving_force(x, DURATION, **STRING, speed=SPEED, force=force)
-    under = theory.deflection_under_moving_force(
-        t, **STRING, speed=SPEED, mean=FORCE, amplitude=SWING, angular_frequency=OMEGA
-    )
+    exact = theory.moving_force(STRING, x, DURATION, speed=SPEED, force=force)
+    under = theory.deflection_under_moving_force(STRING, t, speed=SPEED, force=force)
     off, off_under = difference(x, motion.at(DURATION), exact), difference(t, motion.under_loads[:, 0], under)
     figure = Figure(figsize=(10.0, 6.5), layout="constrained")
     shape, history = figure.subplots(2, 1)

@@ -17,12 +17,13 @@ import numba
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.engines.exudyn.run import Trip, drive
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.kernels import take_one
 from catenary_fe.engines.nonlinear.cables import take_cables
 from catenary_fe.engines.nonlinear.forces import local_compliance, solve
-from catenary_fe.engines.nonlinear.run import NonlinearCatenary
-from catenary_fe.fe.nonlinear_model import contact_start
+from catenary_fe.engines.nonlinear.run import NonlinearEngine
+from catenary_fe.fe.contact import place
+from catenary_fe.statics.contact import static_contact
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
 SPEED, START, SECONDS, STEP = 300 / 3.6, np.array([10.0]), 6.96, 1e-3
@@ -33,18 +34,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--exudyn", action="store_true", help="time Exudyn's solver too")
     options = parser.parse_args()
-    catenary, pairs = cf.load_catenary(LAYOUT), [(cf.library.pantograph("EN 50318:2002"), 120.0)]
-    line = NonlinearCatenary(cf.find_form(catenary))
-    line.drive(pairs, SPEED, START, 5)  # loads Exudyn, compiles
+    catenary, heads = cf.load_catenary(LAYOUT), [cf.library.pantograph("EN 50318:2002")]
+    case, uplifts = RunCase(heads, SPEED, START, SECONDS * SPEED), np.array([120.0])
+    line = NonlinearEngine(cf.find_form(catenary).system)
+    line.run(RunCase(heads, SPEED, START, 0.5), uplifts)  # compiles
     rows: list[tuple[str, float]] = []
     steps = round(SECONDS / STEP)
 
     shape = _timed(rows, "form finding", lambda: cf.find_form(catenary))
     _timed(rows, "statics", lambda: cf.solve_statics(shape))
-    line = _timed(rows, "equations of motion", lambda: NonlinearCatenary(shape))
-    model = (shape.catenary, shape.mesh, shape.installation)
-    _timed(rows, "static contact at the start", lambda: contact_start(*model, pairs, START))
-    _timed(rows, "run, with that", lambda: line.drive(pairs, SPEED, START, steps))
+    line = _timed(rows, "equations of motion", lambda: NonlinearEngine(shape.system))
+    placed = place(heads, uplifts, START, spatial=False)
+    _timed(rows, "static contact at the start", lambda: static_contact(shape.system, placed))
+    _timed(rows, "run, with that", lambda: line.run(case, uplifts))
     for name, value in rows:
         print(f"{name:44s} {value:8.3f} s")
     run = rows[-1][1]
@@ -55,9 +57,8 @@ def main() -> None:
         share = 1e-6 * value * line.iterations / (run - rows[-2][1])
         print(f"{name:44s} {value:8.1f} µs {100 * share:6.1f} %")
     if options.exudyn:
-        trip = Trip(SPEED, START, 1000, cf.TimeSettings())
-        _timed(rows, "", lambda: drive(*model, pairs, trip))
-        print(f"{'real-time factor of Exudyn, one second':44s} {1 / rows[-1][1]:8.2f}")
+        _timed(rows, "", lambda: cf.simulate(shape, heads, speed=SPEED, positions=START, method="exudyn"))
+        print(f"{'real-time factor of Exudyn':44s} {SECONDS / rows[-1][1]:8.2f}")
 
 
 def _timed(rows: list[tuple[str, float]], name: str, what: Callable) -> object:
@@ -67,9 +68,9 @@ def _timed(rows: list[tuple[str, float]], name: str, what: Callable) -> object:
     return result
 
 
-def _parts(line: NonlinearCatenary) -> list[tuple[str, float]]:
+def _parts(line: NonlinearEngine) -> list[tuple[str, float]]:
     """What an iteration consists of [µs each]."""
-    system, factor = line._system, line._factor
+    system, factor = line._parameters.equations, line._factor
     total, inner = system.reference.copy(), np.zeros(system.reference.size)
     x, u = np.zeros(system.force.size), np.zeros(system.force.size)
     at, weights, column = np.arange(1000, 1008, 2), np.ones(4), np.zeros(1000)

@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.base import RunCase
+from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.views.style import PANTOGRAPHS, finish
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
@@ -36,11 +37,11 @@ def measure(spans: int, count: int) -> dict[str, float]:
     begin = time.process_time()
     shape = cf.find_form(line)
     formed = time.process_time()
-    linearised = LinearisedCatenary(shape)
+    linearised = LinearisedLine(shape)
     ready = time.process_time()
     head = cf.library.pantograph("EN 50318:2002")
     start = 10.0 + APART * np.arange(count)[::-1]
-    case = Case([head] * count, SPEED, start, STEPS * SPEED * 1e-3)
+    case = RunCase([head] * count, SPEED, start, STEPS * SPEED * 1e-3)
     linearised.run([case])  # loads the compiled code
     used = []
     for _ in range(3):

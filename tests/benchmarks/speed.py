@@ -17,19 +17,19 @@ import numpy as np
 
 import catenary_fe as cf
 from catenary_fe.engines.arrays import SLOTS
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
-from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+from catenary_fe.engines.base import RunCase
+from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.fe.reduction import linear_model
+from catenary_fe.studies.linearised import LinearisedLine
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
 SPEED, START, STEP = 300 / 3.6, 10.0, 1e-3
 CASES_A_CORE = 2 * SLOTS
 
 
-def nonlinear(line: NonlinearCatenary, seconds: float) -> float:
-    line.drive(
-        [(cf.library.pantograph("EN 50318:2002"), 120.0)], SPEED, np.array([START]), round(seconds / STEP)
-    )
+def nonlinear(line: NonlinearEngine, seconds: float) -> float:
+    head = cf.library.pantograph("EN 50318:2002")
+    line.run(RunCase([head], SPEED, np.array([START]), seconds * SPEED), np.array([120.0]))
     return seconds
 
 
@@ -42,20 +42,20 @@ def exudyn(shape: cf.Shape, seconds: float) -> float:
     return seconds
 
 
-def linearised(line: LinearisedCatenary, cases: int = 1) -> float:
+def linearised(line: LinearisedLine, cases: int = 1) -> float:
     head = cf.library.pantograph("EN 50318:2002")
-    runs = line.run([Case([head], SPEED, np.array([START]), 580.0)] * cases)
+    runs = line.run([RunCase([head], SPEED, np.array([START]), 580.0)] * cases)
     return sum(float(run.time[-1]) for run in runs)
 
 
-_line: LinearisedCatenary | None = None
+_line: LinearisedLine | None = None
 
 
 def sweep_worker(cases: int) -> tuple[float, float]:
     """Simulated seconds and processor time; the line is set up and the code compiled by the first call."""
     global _line
     if _line is None:
-        _line = LinearisedCatenary(cf.find_form(cf.load_catenary(LAYOUT)))
+        _line = LinearisedLine(cf.find_form(cf.load_catenary(LAYOUT)))
         linearised(_line, 2)
     begin = time.process_time()
     return (linearised(_line, cases), time.process_time() - begin) if cases else (0.0, 0.0)
@@ -66,13 +66,13 @@ def plain_scipy(shape: cf.Shape, seconds: float) -> float:
     from scipy.interpolate import CubicHermiteSpline
     from scipy.sparse.linalg import splu
 
-    model = linear_model(shape.catenary, shape.mesh, shape.installation)
+    model = linear_model(shape.system, shape.catenary, shape.mesh)
     head = cf.library.pantograph("EN 50318:2002")
     M, D, K = (A.tocsc() for A in (model.mass, model.damping, model.stiffness))
     solve = splu(M + STEP / 2 * D + STEP**2 / 4 * K, permc_spec="NATURAL", diag_pivot_thresh=0.0).solve
     line, k = model.contacts[0], head.contact_stiffness
     rest = CubicHermiteSpline(
-        line.x, line.static[:, 0] - shape.catenary.contact_wire_height, line.static[:, 1]
+        line.x, line.profile[:, 0] - shape.catenary.contact_wire_height, line.profile[:, 1]
     )
     joints = np.eye(2) - np.eye(2, k=1)
     m, d, c = (np.array([getattr(s, name) for s in head.stages]) for name in ("mass", "damping", "stiffness"))
@@ -86,7 +86,7 @@ def plain_scipy(shape: cf.Shape, seconds: float) -> float:
         row = np.zeros(model.size)
         xi, length = (x - line.x[e]) / (line.x[e + 1] - line.x[e]), line.lengths[e]
         weights = 1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2
-        row[line.index[e : e + 2].ravel()] = np.array(weights) * [1, length, 1, length]
+        row[line.dof[e : e + 2].ravel()] = np.array(weights) * [1, length, 1, length]
         q, v = q + STEP * v + STEP**2 / 4 * a, v + STEP / 2 * a
         y, u = y + STEP * u + STEP**2 / 4 * b, u + STEP / 2 * b
         a, give = solve(-(D @ v + K @ q)), solve(row)
@@ -109,9 +109,9 @@ def main() -> None:
     cores = os.cpu_count() or 1
     catenary = cf.load_catenary(LAYOUT)
     shape = cf.find_form(catenary)  # loads Exudyn
-    line = LinearisedCatenary(shape)
+    line = LinearisedLine(shape)
     linearised(line)  # compiles
-    whole = NonlinearCatenary(shape)
+    whole = NonlinearEngine(shape.system)
     nonlinear(whole, 0.01)
     setups = [_setup(catenary) for _ in range(options.repeat)]
     print(f"{'set-up: form, statics, linearisation':44s} {min(s[0] for s in setups):6.2f} s wall", end="")
@@ -146,7 +146,7 @@ def main() -> None:
 
 def _setup(catenary: cf.Catenary) -> tuple[float, float]:
     begin, used = time.perf_counter(), time.process_time()
-    LinearisedCatenary(cf.find_form(catenary))
+    LinearisedLine(cf.find_form(catenary))
     return time.perf_counter() - begin, time.process_time() - used
 
 

@@ -1,6 +1,9 @@
-"""A way into the compiled kernels for tests."""
+"""Ways into the compiled engines for tests."""
 
+import numpy as np
 import pytest
+
+from catenary_fe.engines.base import RunCase
 
 
 def entry(function):
@@ -12,3 +15,9 @@ def entry(function):
         return function(*arguments)
 
     return call
+
+
+def drive(engine, pairs, speed, start, steps, step=1e-3):
+    """History of pantographs, each with its uplift, over some steps."""
+    case = RunCase([pantograph for pantograph, _ in pairs], speed, start, (steps + 0.5) * speed * step)
+    return engine.run(case, np.array([uplift for _, uplift in pairs]))

@@ -10,27 +10,23 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from kernels import drive as drive_engine
 from kernels import entry
 
 import catenary_fe as cf
-from catenary_fe.engines.arrays import SteadyArmBars
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.compiled import plain
-from catenary_fe.engines.contact_solver import (
-    dropper_parts,
-    link_force,
-    one_way,
-    solve_one_way,
-    swing,
-    update_dropper,
-)
+from catenary_fe.engines.contact_solver import one_way, solve_one_way, solve_points
 from catenary_fe.engines.exudyn.run import Trip, drive
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.linearised import doubts
+from catenary_fe.engines.linearised.arrays import SteadyArmBars
 from catenary_fe.engines.linearised.batch import Batch
-from catenary_fe.engines.linearised.run import Case, LinearisedCatenary
+from catenary_fe.engines.linearised.forces import dropper_parts, link_force, update_arm, update_dropper
 from catenary_fe.engines.nonlinear.forces import _lack
-from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.engines.recorder import Sizes
+from catenary_fe.studies.linearised import LinearisedLine
 
 SPEED = 80.0  # [m/s]
 TIGHT = cf.TimeSettings(tolerance=1e-6)
@@ -56,13 +52,13 @@ class Ride(NamedTuple):
         return drive(line, self.shape.mesh, self.shape.installation, self.pairs, trip)
 
     def nonlinear(self):
-        run = NonlinearCatenary(self.shape, TIGHT, 0.01)
-        history = run.drive(self.pairs, SPEED, np.array([self.start]), self.steps)
+        run = NonlinearEngine(self.shape.system, TIGHT, 0.01)
+        history = drive_engine(run, self.pairs, SPEED, np.array([self.start]), self.steps)
         return history, run.iterations
 
     def linearised(self):
-        case = Case([self.pantograph], SPEED, np.array([self.start]), self.steps * SPEED * 1e-3)
-        (run,) = LinearisedCatenary(self.shape, store_wire=0.01).run([case])
+        case = RunCase([self.pantograph], SPEED, np.array([self.start]), (self.steps + 0.5) * SPEED * 1e-3)
+        (run,) = LinearisedLine(self.shape, store_wire=0.01).run([case])
         assert isinstance(run, cf.Run)
         return run
 
@@ -188,6 +184,15 @@ def test_the_law_is_solved_exactly(spring, damper, cs, cd):
     assert force == pytest.approx(plain(one_way)(spring - cs * force, damper - cd * force), abs=1e-9)
 
 
+LAW = np.array([[-0.02, 180.0], [0.01, 120.0], [0.015, 120.0], [0.05, 0.0]])
+
+
+@given(free=st.floats(-0.1, 0.1), compliance=st.floats(0, 1e-3))
+def test_a_law_of_points_is_solved_exactly(free, compliance):
+    force = plain(solve_points)(LAW, len(LAW), free, compliance)
+    assert force == pytest.approx(np.interp(free + compliance * force, *LAW.T), abs=1e-9)
+
+
 @given(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
 def test_a_link_pulls_along_itself(y, z):
     """And its derivatives are those of its force."""
@@ -222,7 +227,7 @@ def test_a_dropper_that_is_not_taut_lacks_stiffness(spring, damper):
 @pytest.fixture
 def at_rest(space):
     """A slot of a linearised run at rest, and what its forces work on."""
-    setup = LinearisedCatenary(space.shape)._setup
+    setup = LinearisedLine(space.shape).engine.setup
     return setup, Batch(setup, Sizes(pantographs=1, contacts=1, coordinates=1, steps=1, shapes=0), 1)
 
 
@@ -231,7 +236,7 @@ def test_a_link_that_swings_is_on_its_circle(at_rest, y, z):
     setup, slots = at_rest
     links, wires, work, b = setup.line.links, slots.wires, slots.work, setup.scheme.b
     wires.q[links.at[0], 0] = y, z
-    change = entry(swing)(setup.scheme, setup.line, wires, work, 0, 0)
+    change = entry(update_arm)(setup.scheme, setup.line, wires, work, 0, 0)
     y, z = wires.q[links.at[0], 0] + b * wires.x[links.at[0], 0]
     law = plain(link_force)
     (fy, fz, *_), (ry, rz, yy, yz, zz) = law(links, 0, y, z), law(links, 0, 0.0, 0.0)
@@ -240,7 +245,7 @@ def test_a_link_that_swings_is_on_its_circle(at_rest, y, z):
     assert work.arm_force[0, 0] == pytest.approx(beyond, abs=2e-3)
     assert change == pytest.approx(np.abs(work.arm_force[0, 0]).sum())
     before = wires.x.copy()
-    assert entry(swing)(setup.scheme, setup.line, wires, work, 0, 0) == 0.0
+    assert entry(update_arm)(setup.scheme, setup.line, wires, work, 0, 0) == 0.0
     assert np.array_equal(wires.x, before)
 
 

@@ -15,13 +15,14 @@ from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
 from catenary_fe.engines.compiled import plain
-from catenary_fe.engines.contact_solver import swing, update_dropper
 from catenary_fe.engines.generalized_alpha import advance
 from catenary_fe.engines.linearised.batch import Batch
-from catenary_fe.engines.linearised.run import LinearisedCatenary
+from catenary_fe.engines.linearised.forces import update_arm, update_dropper
 from catenary_fe.engines.linearised.setup import Setup
-from catenary_fe.engines.linearised.start import InitialState, contact_row, static_contact, stretch_loads
-from catenary_fe.engines.recorder import Sizes
+from catenary_fe.engines.linearised.start import contact_row, static_contact, stretch_loads
+from catenary_fe.engines.recorder import InitialState, Sizes
+from catenary_fe.fe.contact import place
+from catenary_fe.studies.linearised import LinearisedLine
 
 SPEED, STEPS = 80.0, 4  # [m/s], steps of 1 ms
 
@@ -59,22 +60,25 @@ class History(NamedTuple):
     slots: Batch
 
     @property
-    def touches(self):
-        """Each contact: its pantograph, the pantograph's body, and itself."""
-        return [(p, body, touch) for p, body in enumerate(self.start.bodies) for touch in body.touches]
+    def contacts(self):
+        """Each strip on each wire."""
+        return self.start.contacts
+
+    def body(self, j):
+        """What the pantograph of a contact is made of."""
+        return self.start.pantographs[self.contacts[j].pantograph].body
 
     def over(self, j, n, shift=0.0):
         """Row of the wire's height over a contact in a step; at rest: it, and the place to the left."""
-        _, body, touch = self.touches[j]
-        x = body.position + touch.ahead + SPEED * 1e-3 * (n + 1) + shift
-        return contact_row(self.setup, touch.wire, x)
+        contact = self.contacts[j]
+        return contact_row(self.setup, contact.wire, contact.position + SPEED * 1e-3 * (n + 1) + shift)
 
     def head(self, j, n):
         """Row of the head's height at a contact."""
-        p, body, touch = self.touches[j]
-        row = np.zeros(self.slots.heads.x.shape[1:])
+        contact, body = self.contacts[j], self.body(j)
+        row = np.zeros(self.slots.pantographs.x.shape[1:])
         _, _, lateral = self.over(j, n)
-        row[p, : len(body.K)] = touch.heave + lateral * touch.roll
+        row[contact.pantograph, : body.size] = body.row(contact.strip, lateral)
         return row
 
 
@@ -85,7 +89,7 @@ def law(spring, damper):
 
 def disturb(rng, setup, start, slots, slackening):
     """From the start, droppers, links and heads by as much as makes them leave their tangents."""
-    line, rows, heads = setup.line, setup.model.dropper_rows.T, slots.heads
+    line, rows, heads = setup.line, setup.model.dropper_rows.T, slots.pantographs
     q, v, c, _, w = (array[:, 0] for array in slots.wires)
     size = rows.shape[1]
     q[:] = start.q + slackening * rows @ (rng.uniform(-1, 0.5, size) * 1e-3)
@@ -94,15 +98,16 @@ def disturb(rng, setup, start, slots, slackening):
     v[:] = rng.normal(0, 0.05, v.size) + slackening * rows @ shortening
     c[:] = rng.normal(0, 1.0, c.size)
     w[:] = q + setup.beta * v
-    for p, body in enumerate(start.bodies):
-        part = 0, p, slice(len(body.K))
-        heads.q[part] = body.q + rng.uniform(-2e-3, 2e-3, len(body.K))
-        heads.v[part], heads.c[part] = rng.uniform(-2, 2, (2, len(body.K)))
+    for p, placed in enumerate(start.pantographs):
+        size = placed.body.size
+        part = 0, p, slice(size)
+        heads.q[part] = placed.heights + rng.uniform(-2e-3, 2e-3, size)
+        heads.v[part], heads.c[part] = rng.uniform(-2, 2, (2, size))
 
 
 def take(setup, slots):
     """One step."""
-    wires, heads, work, b, g = slots.wires, slots.heads, slots.work, setup.scheme.b, setup.scheme.g
+    wires, heads, work, b, g = slots.wires, slots.pantographs, slots.work, setup.scheme.b, setup.scheme.g
     before = [[array[:, 0].copy() for array in wires[:3]], [array[0].copy() for array in heads[:3]]]
     tension = work.tension[0].copy()
     slots.advance(1)
@@ -117,8 +122,12 @@ def take(setup, slots):
 
 
 def travel(setup, pantographs, places, every, slackening=1.0):
-    start = static_contact(setup, pantographs, np.full(len(places), 60.0), np.array(places), SPEED)
-    sizes = Sizes(pantographs=len(places) + 1, contacts=9, coordinates=6, steps=STEPS, shapes=STEPS + 1)
+    uplifts = np.full(len(places), 60.0)
+    placed = place(pantographs, uplifts, np.array(places), spatial=setup.model.spatial)
+    start = static_contact(setup, placed, SPEED)
+    sizes = Sizes(
+        pantographs=len(places) + 1, contacts=9, coordinates=6, steps=STEPS, shapes=STEPS + 1, points=3
+    )
     slots, rng, steps = Batch(setup, sizes, 1, every), np.random.default_rng(4), []
     slots.load(0, start, STEPS)
     for _ in range(STEPS):
@@ -134,7 +143,7 @@ def elastic():
 
 @pytest.fixture(scope="module")
 def twin_setup(twin_shape):
-    return LinearisedCatenary(twin_shape)._setup
+    return LinearisedLine(twin_shape).engine.setup
 
 
 @pytest.fixture(scope="module")
@@ -164,7 +173,7 @@ def with_links(setup, count):
 
 @pytest.fixture(scope="module")
 def plane_setup(plane_shape):
-    return LinearisedCatenary(plane_shape)._setup
+    return LinearisedLine(plane_shape).engine.setup
 
 
 @pytest.fixture(scope="module")
@@ -197,7 +206,7 @@ def test_wires_move_as_forces_have_it(history):
         tensed = q.copy()
         tensed[line.tensions] = step.tension  # terms of second order take it from the step before
         load = stretch_loads(line, tensed) - model.damping @ v - model.stiffness @ q
-        load += sum(step.force[j] * history.over(j, n)[0] for j in range(len(history.touches)))
+        load += sum(step.force[j] * history.over(j, n)[0] for j in range(len(history.contacts)))
         load += model.dropper_rows.T @ step.slack
         load[line.links.at] += step.swing
         x = spsolve(matrix, load)
@@ -207,12 +216,12 @@ def test_wires_move_as_forces_have_it(history):
 
 def test_heads_move_as_forces_have_it(history):
     for n, step in enumerate(history.steps):
-        pushed = sum(step.force[j] * history.head(j, n) for j in range(len(history.touches)))
-        for p, body in enumerate(history.start.bodies):
-            part = p, slice(len(body.K))
+        pushed = sum(step.force[j] * history.head(j, n) for j in range(len(history.contacts)))
+        for p, placed in enumerate(history.start.pantographs):
+            body, part = placed.body, (p, slice(placed.body.size))
             q, v, x = (array[part] for array in step.heads)
-            forces = body.M @ x + body.D @ v + body.K @ q + pushed[part]
-            assert forces == pytest.approx(body.uplift * body.load, abs=1e-6)
+            forces = body.mass @ x + body.damping @ v + body.stiffness @ q + pushed[part]
+            assert forces == pytest.approx(placed.uplift * body.load, abs=1e-6)
         predicted = plain(advance)(history.setup.scheme, *step.before[1], step.heads.x)
         for mine, other in zip(step.after, predicted, strict=True):
             assert mine == pytest.approx(other, abs=1e-12)
@@ -220,19 +229,19 @@ def test_heads_move_as_forces_have_it(history):
 
 def contact_parts(history, n, j):
     """Spring's and damper's force [N] of a contact, as if it could pull."""
-    step, (_, body, _) = history.steps[n], history.touches[j]
+    step, contact = history.steps[n], history.body(j).contact
     row, rest, _ = history.over(j, n)
     ahead, behind = (history.over(j, n, shift) for shift in (1e-5, -1e-5))
     inclination = ((ahead[0] - behind[0]) @ step.wires.q + ahead[1] - behind[1]) / 2e-5
     head = history.head(j, n)
     gap = (head * step.heads.q).sum() - row @ step.wires.q - rest
     closing = (head * step.heads.v).sum() - row @ step.wires.v - SPEED * inclination
-    return body.contact_stiffness * gap + body.preload, body.contact_damping * closing
+    return contact.stiffness * gap + contact.preload, contact.damping * closing
 
 
 def test_contacts_follow_their_law(history):
     for n, step in enumerate(history.steps):
-        for j in range(len(history.touches)):
+        for j in range(len(history.contacts)):
             assert step.force[j] == pytest.approx(law(*contact_parts(history, n, j)), abs=1e-5)
         assert np.array_equal(history.slots.records.force[0, :, n + 1], step.force)
 
@@ -259,7 +268,7 @@ def test_droppers_follow_their_law(history):
 
 
 def test_the_states_were_of_all_kinds(in_space, one_link):
-    contacts = [contact_parts(in_space, n, j) for n in range(STEPS) for j in range(len(in_space.touches))]
+    contacts = [contact_parts(in_space, n, j) for n in range(STEPS) for j in range(len(in_space.contacts))]
     droppers = [dropper_parts(in_space, step) for step in in_space.steps]
     for spring, damper in (np.transpose(contacts), np.hstack(droppers)):
         assert (spring <= 0).any()
@@ -284,7 +293,7 @@ def test_the_last_step_to_the_circle_squares_the_error(twin_setup, y, z):
     setup, links = twin_setup, twin_setup.line.links
     slots = Batch(setup, Sizes(1, 1, 1, 1), 1)
     slots.wires.q[links.at[0], 0] = y, z
-    entry(swing)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
+    entry(update_arm)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
     moved = (slots.wires.q + setup.scheme.b * slots.wires.x)[links.at, 0]
     assert slots.work.arm_force[0, 0] == pytest.approx(beyond_tangent(links, moved)[0], abs=1e-6)
 
@@ -313,7 +322,7 @@ def test_a_step_is_recorded_where_it_ends(history):
     supports, nodes = np.flatnonzero(line.supports >= 0), np.flatnonzero(line.heights >= 0)
     for n, step in enumerate(history.steps, start=1):
         q = step.wires.q
-        for j in range(len(history.touches)):
+        for j in range(len(history.contacts)):
             row, rest, _ = history.over(j, n - 1)
             assert records.height[0, j, n] == pytest.approx(row @ q + rest, abs=1e-12)
         assert records.masses[0, :, :, n] == pytest.approx(step.heads.q, abs=1e-12)

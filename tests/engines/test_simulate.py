@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.engines.linearised.run import LinearisedCatenary
-from catenary_fe.engines.nonlinear.run import NonlinearCatenary
+from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.studies.checks import run_warnings
+from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.studies.mean_force import MeanForce
 
 # accepted ranges of EN 50318:2002 (secondary source)
@@ -88,14 +88,14 @@ WANTED = cf.library.pantograph("EN 50318:2018 AC")
 @pytest.fixture
 def nonlinear_runs(monkeypatch):
     """Uplifts of the nonlinear runs that are made, in their order."""
-    uplifts, drive = [], NonlinearCatenary.drive
+    found, run = [], NonlinearEngine.run
 
-    def counted(self, pairs, *rest):
-        uplifts.append([uplift for _, uplift in pairs])
-        return drive(self, pairs, *rest)
+    def counted(self, case, uplifts, *rest):
+        found.append(uplifts.tolist())
+        return run(self, case, uplifts, *rest)
 
-    monkeypatch.setattr(NonlinearCatenary, "drive", counted)
-    return uplifts
+    monkeypatch.setattr(NonlinearEngine, "run", counted)
+    return found
 
 
 def mean_of(shape, step=2e-3):
@@ -132,7 +132,7 @@ def test_without_linearised_runs_a_mean_force_is_reached_too(short_shape, nonlin
     def fails(*_):
         raise cf.SolverError("no")
 
-    monkeypatch.setattr(LinearisedCatenary, "run", fails)
+    monkeypatch.setattr(LinearisedLine, "run", fails)
     _, mean = mean_of(short_shape)
     assert mean == pytest.approx(0.00097 * 250**2 + 70, abs=0.1)
     assert nonlinear_runs[0] == [0.00097 * 250**2 + 70]

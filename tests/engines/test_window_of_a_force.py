@@ -6,23 +6,19 @@ from kernels import entry
 
 from catenary_fe.engines.generalized_alpha import make_scheme
 from catenary_fe.engines.nonlinear.forces import REACH, ROOM, local_compliance, solve, woodbury_update
-from catenary_fe.engines.nonlinear.setup import make_factor, make_system
+from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import _slack
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.fe.nonlinear_model import nonlinear_model
 
 
 @pytest.fixture(scope="module")
 def parts(short_shape):
     """Model, arrays, and the step's matrix at rest with its factor."""
-    model = nonlinear_model(short_shape.catenary, short_shape.mesh, short_shape.installation)
-    scheme = make_scheme(TimeSettings())
-    matrix = (
-        model.mass
-        + scheme.g * model.tangent_damping
-        + scheme.b * model.system.tangent(0 * model.system.reference)
-    )
-    return model, make_system(model), matrix.tocsc(), make_factor(model, scheme, 0 * model.system.reference)
+    system, scheme = short_shape.system, make_scheme(TimeSettings())
+    parameters, rest = Parameters(system), np.zeros_like(system.reference)
+    damping = system.free(system.damping() + system.taut_damping())
+    matrix = system.free(system.mass) + scheme.g * damping + scheme.b * system.tangent(rest)
+    return system, parameters.equations, matrix.tocsc(), parameters.factor(scheme, rest)
 
 
 def solved(matrix, right):
@@ -71,7 +67,7 @@ def test_a_dropper_that_lacks_stiffness_softens_the_solution(parts, lack):
     slack, i = _slack(system), 14
     scheme = make_scheme(TimeSettings())
     slack.row[i] = [0.1, -1.0, -0.1, 1.0]
-    slack.lack[i] = lack * scheme.b * model.system.droppers.stiffness[i]
+    slack.lack[i] = lack * scheme.b * model.droppers.stiffness[i]
     row = np.zeros((1, model.size))
     row[0, slack.at[i]] = slack.row[i]
     right = 0.3 * row[0]

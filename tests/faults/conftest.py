@@ -48,7 +48,7 @@ def call(capsys):
 
 @pytest.fixture
 def start():
-    """InitialState the command line as a process that leads a group of its own."""
+    """Start the command line as a process that leads a group of its own."""
     started = []
 
     def begun(*arguments):

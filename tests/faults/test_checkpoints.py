@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.studies import checkpoint
+from catenary_fe.engines import checkpoint
 
 pytest.importorskip("numba")
 
 RUN = """
 import sys, time, catenary_fe as cf
-from catenary_fe.studies import checkpoint
+from catenary_fe.engines import checkpoint
 checkpoint.INTERVAL = 0.0
 line = cf.load_catenary({layout!r})
 line = line.replace(spans=line.spans[:3], supports=line.supports[:4], evaluated_spans=(2,))
@@ -99,5 +99,5 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_run(shape, pantogr
 
 @pytest.mark.parametrize("method", ["linearised", "exudyn"])
 def test_other_methods_keep_none(shape, pantograph, tmp_path, method):
-    with pytest.raises(cf.InputError, match="only compiled runs with the method nonlinear keep one"):
+    with pytest.raises(cf.InputError, match="only runs with the method nonlinear keep one"):
         cf.simulate(shape, [pantograph], speed=80.0, method=method, checkpoint=tmp_path / "state.npz")

@@ -39,7 +39,7 @@ def whole(shape, pantograph):
 
 @pytest.fixture(scope="module")
 def early(shape, pantograph):
-    """RunStopped inside the evaluated span."""
+    """Stopped inside the evaluated span."""
     return interrupted(shape, [pantograph], 0.5, store_wire=0.02).partial
 
 
@@ -117,7 +117,7 @@ def test_a_compiled_run_keeps_its_finished_blocks(shape, pantograph):
 
 
 def test_an_interrupt_between_readings_keeps_them_together(shape, pantograph, monkeypatch):
-    from catenary_fe.engines.nonlinear.energy import EnergyRecord
+    from catenary_fe.engines.nonlinear.recorder import EnergyRecord
     from catenary_fe.engines.tension import TensionRecord
 
     for record in (EnergyRecord, TensionRecord):

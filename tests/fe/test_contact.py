@@ -152,7 +152,7 @@ def test_the_law_and_the_wire_meet(rest, yielding, solves):
 @pytest.mark.parametrize(("rest", "yielding"), [(0.05, 1e-2), (0.0705, 1e-4), (0.4, 1e-4)])
 def test_pieces_that_alternate_are_halved(monkeypatch, rest, yielding):
     """Without a try of straight pieces, which would find these."""
-    from catenary_fe.fe import contact as module
+    from catenary_fe.engines.exudyn import contact as module
 
     before = settled(rest, yielding)[:2]
     monkeypatch.setattr(module, "_PIECES", 0)

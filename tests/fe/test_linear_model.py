@@ -6,13 +6,13 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.engines.modal.eigen import linear_system
 from catenary_fe.fe.cable import hermite
-from catenary_fe.fe.nonlinear_model import nonlinear_model
 from catenary_fe.fe.reduction import linear_model
+from catenary_fe.fe.system import assemble
 
 
 @pytest.fixture(scope="module")
 def reduced(short_shape):
-    return linear_model(short_shape.catenary, short_shape.mesh, short_shape.installation)
+    return linear_model(short_shape.system, short_shape.catenary, short_shape.mesh)
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_receptance_of_the_contact_wire(reduced, whole, short_shape, frequency, 
     e = int(np.searchsorted(line.x, position, side="right")) - 1
     weights = hermite((position - line.x[e]) / (line.x[e + 1] - line.x[e]), line.lengths[e])
     row = np.zeros(reduced.size)
-    row[line.index[e : e + 2].ravel()] = weights
+    row[line.dof[e : e + 2].ravel()] = weights
     ours = receptance(reduced.mass, reduced.damping, reduced.stiffness, row, frequency)
     filled = np.zeros(whole.transformation.shape[0])
     width = whole.node_width
@@ -64,9 +64,10 @@ def test_tension_coordinates_have_no_mass(reduced):
 def damped(shape, kind, alpha=0.0, beta=0.0, **changes):
     """Damping matrix of a run's model of a shape; some parts changed that do not move it."""
     line = shape.catenary.replace(damping=cf.RayleighDamping(alpha=alpha, beta=beta), **changes)
+    system = assemble(line, shape.mesh, shape.installation)
     if kind == "linear":
-        return linear_model(line, shape.mesh, shape.installation).damping
-    return nonlinear_model(line, shape.mesh, shape.installation).tangent_damping
+        return linear_model(system, line, shape.mesh).damping
+    return system.free(system.damping() + system.taut_damping())
 
 
 def with_supports(line, **changes):
@@ -94,16 +95,16 @@ def test_rayleigh_damping_of_wires_and_droppers(short_shape):
     assert {d.stiffness for d in line.droppers} == {k}
     spans = tuple(s.replace(droppers=tuple(d.replace(damping=own) for d in s.droppers)) for s in line.spans)
     changed = line.replace(spans=spans, damping=cf.RayleighDamping(beta=beta))
-    parts = changed, short_shape.mesh, short_shape.installation
-    model, large = linear_model(*parts), nonlinear_model(*parts)
-    for found in (model.dropper_damping, large.system.droppers.damping):
+    system = assemble(changed, short_shape.mesh, short_shape.installation)
+    model = linear_model(system, changed, short_shape.mesh)
+    for found in (model.dropper_damping, system.droppers.damping):
         assert found == pytest.approx(np.full(len(line.droppers), own + beta * k))
     rows, places = model.dropper_rows, model.heights[model.heights >= 0]
     wires_damping = model.damping - rows.T @ ((own + beta * k) * rows)
     wires_stiffness = model.stiffness - rows.T @ (k * rows)
     bent = np.zeros(model.size)
     bent[places] = np.cos(np.arange(places.size))
-    bent[model.contacts[0].supports] = 0.0  # there arms and supports hold the wires
+    bent[model.contacts[0].dof[model.contacts[0].supports, 0]] = 0.0  # there arms and supports hold the wires
     damped_by, held_by = (matrix @ bent for matrix in (wires_damping, beta * wires_stiffness))
     away = np.setdiff1d(places, at_springs(short_shape, model))
     assert damped_by[away] == pytest.approx(held_by[away], abs=1e-3 * np.abs(held_by).max())
@@ -129,7 +130,7 @@ def test_mass_damping_is_of_the_wires_alone(short_shape, kind):
     assert abs(before - after).max() <= 1e-9 * abs(before).max()
     wires = (line.contact_wire.mass_per_length + line.messenger_wire.mass_per_length) * line.length
     if kind == "linear":
-        model = linear_model(line, short_shape.mesh, short_shape.installation)
+        model = linear_model(short_shape.system, line, short_shape.mesh)
         up = np.zeros(model.size)
         up[model.heights[model.heights >= 0]] = 1.0
         assert up @ before @ up == pytest.approx(0.1 * wires, rel=0.02)  # without the ends, which are held

@@ -1,7 +1,10 @@
 """The assembled line: its forces, tangent and energy belong together, and are what Exudyn assembles."""
 
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import exudyn as exu
 import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
@@ -21,9 +24,23 @@ def first_spans(path: Path, count: int = 3) -> cf.Catenary:
     )
 
 
-@pytest.fixture(scope="module", params=LAYOUTS, ids=lambda path: path.stem)
+def curved(path: Path) -> cf.Catenary:
+    """All spans in a curve to the left, the arms inside of it."""
+    line = first_spans(path)
+    supports = tuple(s.replace(stagger=-0.2) for s in line.supports)
+    return line.replace(
+        name="curve", spans=tuple(s.replace(curve_radius=1200.0) for s in line.spans), supports=supports
+    )
+
+
+LINES = {path.stem: (first_spans, path) for path in LAYOUTS}
+LINES["curve"] = curved, LAYOUTS[0].with_name("en50318_2018_ac_simple.toml")
+
+
+@pytest.fixture(scope="module", params=LINES)
 def shape(request) -> cf.Shape:
-    return cf.find_form(first_spans(request.param))
+    make, path = LINES[request.param]
+    return cf.find_form(make(path))
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +81,86 @@ def test_parts_of_the_stiffness_add_up(system):
     assert abs(whole - parts).max() < 1e-9 * abs(whole).max()
 
 
+@dataclass(frozen=True)
+class Assembled:
+    """What Exudyn assembles at one state, over the wires' coordinates."""
+
+    mass: np.ndarray
+    forces: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+
+
+def assembled_by_exudyn(mbs: exu.MainSystem, moved: np.ndarray) -> Assembled:
+    """Mass, forces, tangent and damping at displacements; nodes of the wires must be the system's first.
+
+    The forces are without the reactions of constraints. The tangent is in closed form for the cables, and by
+    numerical differentiation for what has user functions: droppers.
+    """
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = settings.solution.sensors.active = False
+    settings.solution.solverInformationFileName = ""
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.timeIntegration.verboseMode = 0
+    n = moved.size
+    rest = np.zeros(mbs.systemData.ODE2Size() - n)
+    mbs.systemData.SetODE2Coordinates(np.concatenate([moved, rest]), exu.ConfigurationType.Initial)
+    solver = exu.MainSolverImplicitSecondOrder()
+    assert solver.InitializeSolver(mbs, settings)
+    solver.ComputeMassMatrix(mbs)
+    solver.ComputeODE2RHS(mbs)
+    mass, forces = np.array(solver.GetSystemMassMatrix()), np.array(solver.GetSystemResidual())
+    solver.ComputeJacobianODE2RHS(mbs, scalarFactor_ODE2=-1.0, scalarFactor_ODE2_t=0.0)
+    stiffness = np.array(solver.GetSystemJacobian())
+    solver.ComputeJacobianODE2RHS(mbs, scalarFactor_ODE2=0.0, scalarFactor_ODE2_t=-1.0)
+    damping = np.array(solver.GetSystemJacobian())
+    return Assembled(mass[:n, :n], forces[:n], stiffness[:n, :n], damping[:n, :n])
+
+
+@pytest.fixture(scope="module")
+def exudyn_at(shape) -> Iterator[Callable[[np.ndarray], Assembled]]:
+    """What Exudyn assembles of the line, at given displacements."""
+    mbs = build_model(shape.catenary, shape.mesh, shape.installation).mbs
+    mbs.Assemble()
+    yield lambda moved: assembled_by_exudyn(mbs, moved)
+    release(mbs)
+
+
+def assert_equal_to_rounding(system: System, theirs: Assembled, moved: np.ndarray) -> None:
+    """Mass 1e-14; forces 5e-6 N, rounding of EA ε at x = 200 m; tangent 1e-8, droppers differentiated."""
+    assert abs(system.mass - theirs.mass).max() < 1e-14 * np.abs(theirs.mass).max()
+    assert system.out_of_balance(moved) == pytest.approx(theirs.forces, abs=5e-6)
+    stiffness = system.transformation.T @ theirs.stiffness @ system.transformation
+    assert abs(system.tangent(moved, taut=False) - stiffness).max() < 1e-8 * np.abs(stiffness).max()
+
+
+def test_exudyn_assembles_the_same_at_rest(system, exudyn_at):
+    rest = 0 * system.reference
+    theirs = exudyn_at(rest)
+    assert_equal_to_rounding(system, theirs, rest)
+    damping = system.damping() + system.taut_damping()
+    assert abs(damping - theirs.damping).max() < 2e-8 * np.abs(theirs.damping).max()
+
+
+def test_exudyn_assembles_the_same_in_motion(system, moved, exudyn_at):
+    """Of its droppers, some are slack."""
+    total = system.reference + moved
+    assert (system.droppers.tension(system.droppers.span(total)) == 0).any()
+    assert_equal_to_rounding(system, exudyn_at(moved), moved)
+
+
+def test_a_dropper_that_is_stiffer_by_a_thousandth_is_seen(system, moved, exudyn_at):
+    """Negative control."""
+    stiffness = system.droppers.stiffness.copy()
+    taut = np.argmax(system.droppers.tension(system.droppers.span(system.reference + moved)))
+    stiffness[taut] *= 1.001
+    other = replace(system, droppers=replace(system.droppers, stiffness=stiffness))
+    theirs = exudyn_at(moved)
+    assert np.abs(other.out_of_balance(moved) - theirs.forces).max() > 1e-3
+    with pytest.raises(AssertionError):
+        assert_equal_to_rounding(other, theirs, moved)
+
+
 def test_exudyn_finds_the_same_equilibrium(shape):
     model = build_model(shape.catenary, shape.mesh, shape.installation)
     model.mbs.Assemble()
@@ -77,8 +174,6 @@ def test_exudyn_finds_the_same_equilibrium(shape):
 
 def test_without_the_balance_the_wires_hang_millimetres_elsewhere(shape):
     """Negative control: what the balance is for."""
-    from dataclasses import replace
-
     bare = replace(shape.installation, balance=0 * shape.installation.balance)
     system = assemble(shape.catenary, shape.mesh, bare)
     residual = system.gather(system.out_of_balance(0 * system.reference))

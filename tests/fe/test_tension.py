@@ -9,7 +9,7 @@ from catenary_fe.engines.tension import TensionGauge
 
 
 def gauge_of(model):
-    return TensionGauge(model.catenary, model.mesh, [wire.line for wire in model.wires])
+    return TensionGauge(model.system)
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import catenary_fe as cf
+from catenary_fe.fe.system import assemble
 
 LAYOUTS = Path(__file__).parents[2] / "models" / "layouts"
 FILE = Path(__file__).with_name("golden.json")
@@ -29,6 +32,41 @@ def form(shape: cf.Shape) -> Numbers:
     found["steady arm (N)"] = float(shape.steady_arm_forces[1])
     found["steady arm, sideways (N)"] = float(shape.steady_arm_lateral_forces[1])
     found["messenger support (N)"] = float(shape.support_forces[1])
+    return found
+
+
+def curve() -> cf.Catenary:
+    """A line whose spans all lie in a curve to the left, its arms inside of it."""
+    straight = line("en50318_2018_ac_simple", 4, 3)
+    supports = tuple(support.replace(stagger=-0.2) for support in straight.supports)
+    spans = tuple(span.replace(curve_radius=1200.0) for span in straight.spans)
+    return straight.replace(name="curve", spans=spans, supports=supports)
+
+
+def system(shape: cf.Shape) -> Numbers:
+    """Norms of mass, damping, stiffness and constant forces over the coordinates that move.
+
+    EA decides the norms of whole matrices; tension, bending and droppers decide those of the vertical part.
+    """
+    assembled = assemble(shape.catenary, shape.mesh, shape.installation)
+    upwards = np.zeros((assembled.reference.size // (2 * assembled.axes), 2 * assembled.axes))
+    upwards[:, assembled.axes - 1] = 1.0
+    vertical = assembled.gather(upwards.ravel()) > 0
+    forces = assembled.gather(assembled.force)
+    found = {
+        "sum of force magnitudes (N)": float(np.abs(forces).sum()),
+        "sum of vertical force magnitudes (N)": float(np.abs(forces[vertical]).sum()),
+    }
+    for name, matrix in {
+        "mass": assembled.free(assembled.mass),
+        "damping": assembled.free(assembled.damping() + assembled.taut_damping()),
+        "stiffness": assembled.tangent(0 * assembled.reference),
+    }.items():
+        part = matrix[vertical][:, vertical]
+        found[f"{name}, trace"] = float(matrix.trace())
+        found[f"{name}, Frobenius norm"] = float(np.sqrt(matrix.power(2).sum()))
+        found[f"{name}, trace of the vertical part"] = float(part.trace())
+        found[f"{name}, Frobenius norm of the vertical part"] = float(np.sqrt(part.power(2).sum()))
     return found
 
 
@@ -59,6 +97,10 @@ def compute() -> dict[str, Numbers]:
     flat, deep = cf.find_form(plane), cf.find_form(space)
     head = cf.library.pantograph("EN 50318:2002")
     return {
+        "en50318_2002: system": system(flat),
+        "en50318_2018_ac_stitched: system": system(deep),
+        "dc_3kv_twin: system": system(cf.find_form(line("dc_3kv_twin", 3, 2))),
+        "en50318_2018_ac_simple in a curve: system": system(cf.find_form(curve())),
         "en50318_2002: form": form(flat),
         "en50318_2002: statics": statics(flat),
         "en50318_2002: linearised run, 250 km/h": run(flat, head, 250, "linearised", 1e-3),

@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from results import FILE, compute
 
 RELATIVE = 2e-4  # rounding of another machine or library, through iterations that end at 1e-4 of a step
-ABSOLUTE = {"form": 2e-4, "statics": 1e-5, "run": 0.02}  # [N, m, mm] of numbers that are small
+ABSOLUTE = {"form": 2e-4, "statics": 1e-5, "run": 0.02, "system": 0.0}  # [N, m, mm] of small numbers
 
 
 def moved(case, before, now):

@@ -6,14 +6,12 @@ The schemas say which keys there are. A key that is new there has no value here,
 import copy
 import tomllib
 from collections.abc import Iterator
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.engines.linearised.start import chain_of
 from catenary_fe.fe.reduction import linear_model
 from catenary_fe.layout import layout_schema, layout_warnings, pantograph_schema
 from catenary_fe.layout.files import LayoutFile
@@ -175,7 +173,7 @@ def computed(line: cf.Catenary) -> Iterator[Any]:
     shape = cf.find_form(line)
     yield shape.dropper_schedule()
     yield [wire.z.round(9).tolist() for wire in shape.wires]
-    model = linear_model(line, shape.mesh, shape.installation)
+    model = linear_model(shape.system, line, shape.mesh)
     weights = np.cos(np.arange(model.size))
     for matrix in (model.mass, model.damping, model.stiffness):
         yield float(weights @ (matrix @ weights))
@@ -257,10 +255,7 @@ SET = {"name": "set", "mean_force": "EN 50367 AC", "stages": STAGES}
 
 def known_of(pantograph: cf.Pantograph) -> list[Any]:
     """What is computed from a pantograph before it runs."""
-    chain = chain_of(SimpleNamespace(in_space=True, contacts=[0, 1]), pantograph)
-    touches = [(t.wire, t.ahead, t.heave.tolist(), t.roll.tolist()) for t in chain.touches]
-    found = [chain.M.tolist(), chain.K.tolist(), chain.D.tolist(), chain.load.tolist(), touches]
-    found += [chain.contact_stiffness, chain.contact_damping]
+    found = [pantograph.assemble(spatial=True)]
     return [*found, pantograph.static_uplift(70.0), pantograph.target_mean_force(70.0)]
 
 

@@ -19,7 +19,9 @@ def problems(make, *args, **kwargs):
 def test_wave_speed_and_impedance():
     wire = cf.Wire(**WIRE)
     assert wire.wave_speed == pytest.approx(math.sqrt(20e3 / 1.35))
-    assert wire.impedance == pytest.approx(wire.mass_per_length * wire.wave_speed)
+    assert wire.impedance == pytest.approx(math.sqrt(20e3 * 1.35))
+    beam = wire.replace(bending_stiffness=195.0).beam
+    assert (beam.tension, beam.mass_per_length, beam.bending_stiffness) == (20e3, 1.35, 195.0)
 
 
 @pytest.mark.parametrize(

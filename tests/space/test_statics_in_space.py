@@ -81,10 +81,10 @@ def test_a_link_acts_like_pull_over_length(following):
     without = without.replace(
         supports=tuple(s.replace(steady_arm=s.steady_arm.replace(stiffness=1.0)) for s in without.supports)
     )
-    head_compliance = cf.elasticity(cf.find_form(without), positions=x, force=50.0)
+    soft = cf.elasticity(cf.find_form(without), positions=x, force=50.0)
     assert following.planar().supports[2].steady_arm.stiffness == pytest.approx(22e3 * 0.8 / 55 / 1.2)
     assert space.values == pytest.approx(plane.values, rel=5e-3)
-    assert head_compliance.values > 1.03 * plane.values  # the arm's share is seen
+    assert soft.values > 1.03 * plane.values  # the arm's share is seen
 
 
 def test_a_given_inclination_decides_the_height(following):

@@ -62,7 +62,7 @@ def test_the_messenger_wire_gives_its_tension_to_the_stitch_wire(stitched_shape)
 
 
 def test_stitch_wires_that_meet_are_refused(stitched):
-    with pytest.raises(cf.InputError, match=r"span 2: stitch wires of 66 m solve_contacts in a span of 65 m"):
+    with pytest.raises(cf.InputError, match=r"span 2: stitch wires of 66 m meet in a span of 65 m"):
         stitched.replace(stitch_wire=stitched.stitch_wire.replace(length=66.0))
     with pytest.raises(cf.InputError, match="leaves the messenger wire none"):
         stitched.replace(stitch_wire=stitched.stitch_wire.replace(tension=22e3))

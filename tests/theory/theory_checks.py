@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from catenary_fe.theory import wave_speed
+from catenary_fe.theory import Beam, String
 
-WIRE = {"tension": 20e3, "mass_per_length": 1.33}
-T, RHO = WIRE["tension"], WIRE["mass_per_length"]
-C = wave_speed(**WIRE)
+T, RHO = 20e3, 1.33
+STRING = String(tension=T, mass_per_length=RHO)
+HEAVIER = String(tension=T, mass_per_length=1.01 * RHO)
+TIGHTER = String(tension=1.01 * T, mass_per_length=RHO)
+C = STRING.wave_speed
 SPEEDS = [0.0, 0.3 * C, 0.725 * C, C, 1.5 * C, 2.0 * C]
+
+
+def beam_with(bending_stiffness: float = 0.0, **changed: float) -> Beam:
+    """The paper's wire with a bending stiffness [N m²]."""
+    values = {"tension": T, "mass_per_length": RHO, "bending_stiffness": bending_stiffness, **changed}
+    return Beam(**values)
 
 
 def apart(computed, reference) -> float:

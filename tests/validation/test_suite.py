@@ -8,7 +8,7 @@ import pytest
 
 import validation
 from catenary_fe.layout import InputError
-from validation import CASES, Checks, run_cases, run_twins, write_report
+from validation import CASES, Checks, run_cases, run_negative_controls, write_report
 from validation.check import compare, compare_curves
 from validation.report import report_text
 
@@ -25,7 +25,7 @@ def test_every_file_is_a_case_under_its_own_name():
     assert all(case.name == name for name, case in CASES.items())
 
 
-def test_every_case_says_what_it_is_and_what_its_twin_has_wrong():
+def test_every_case_says_what_it_is_and_what_its_negative_control_has_wrong():
     for case in CASES.values():
         assert case.kind in ("verification", "validation")
         assert case.title and case.text and case.off
@@ -62,7 +62,7 @@ def test_unknown_case_is_named_with_the_known_ones():
     with pytest.raises(InputError, match=r"'sga' is unknown; there are .*sag"):
         run_cases(["sga"])
     with pytest.raises(InputError, match="sga"):
-        run_twins(["sga"])
+        run_negative_controls(["sga"])
 
 
 def test_rows_are_json():

@@ -24,16 +24,16 @@ def compute(quick: bool) -> WireMotion:
 
 
 def exact(x: Floats, t: float, force: float = FORCE) -> Floats:
-    return theory.moving_force_by_images(x, t, **STRING, length=LENGTH, speed=SPEED, force=force)
+    return theory.moving_force_by_images(STRING, x, t, length=LENGTH, speed=SPEED, force=force)
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
     return [
         compare_curves(
             f"deflection at {t:g} s",
             motion.x,
             motion.at(t),
-            exact(motion.x, t, slip * FORCE),
+            exact(motion.x, t, perturbation * FORCE),
             0.005,
             source=SOURCE,
             reason=REASON,

@@ -11,7 +11,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare
-from validation.paper_wire import PAPER, STRING, C, Floats, run, wire
+from validation.paper_wire import MASS, PAPER, C, Floats, run, wire
 from validation.pictures import REFERENCE, label
 
 LENGTH, BENDING, HEIGHT, WIDTH = 60.0, 200e3, 0.002, 1.0
@@ -49,13 +49,13 @@ def compute(quick: bool) -> Measured:
     return Measured(k, np.arccos(cosine) / (every * step))
 
 
-def compare_measured(measured: Measured, slip: float) -> list[Check]:
+def compare_measured(measured: Measured, perturbation: float) -> list[Check]:
     checks = []
     for wanted in WAVENUMBERS:
         i = int(np.abs(measured.k - wanted).argmin())
         k = float(measured.k[i])
-        values = {**STRING, "mass_per_length": slip * STRING["mass_per_length"]}
-        exact = float(theory.angular_frequency(k, **values, bending_stiffness=BENDING))
+        beam = wire(BENDING, mass_per_length=perturbation * MASS).beam
+        exact = float(theory.angular_frequency(beam, k))
         checks.append(
             compare(
                 f"ω at k = {k:.3f} rad/m",
@@ -73,13 +73,13 @@ def compare_measured(measured: Measured, slip: float) -> list[Check]:
 def draw(measured: Measured, figure: Figure) -> None:
     left, right = figure.subplots(1, 2)
     k = np.linspace(0.01, measured.k.max(), 200)
-    omega = theory.angular_frequency(k, **STRING, bending_stiffness=BENDING)
+    omega = theory.angular_frequency(wire(BENDING).beam, k)
     left.plot(measured.k, measured.omega, "o", markersize=3, color="#c1440e", label="measured from a pulse")
     left.plot(k, omega, **REFERENCE, label="tensioned beam")
     left.plot(k, C * k, ":", color="grey", label="string")
     label(left, "wavenumber in rad/m", "angular frequency in rad/s")
     left.legend(fontsize=8)
-    exact = theory.angular_frequency(measured.k, **STRING, bending_stiffness=BENDING)
+    exact = theory.angular_frequency(wire(BENDING).beam, measured.k)
     right.plot(measured.k, 100 * (measured.omega / exact - 1), "o", markersize=3, color="#c1440e")
     label(right, "wavenumber in rad/m", "error in %")
 

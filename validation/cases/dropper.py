@@ -51,11 +51,11 @@ def compute(quick: bool) -> PairMotion:
     return run_pair(pair, duration=TIME, time=time)
 
 
-def reference(t: Floats, slip: float = 1.0) -> tuple[Floats, Floats, Floats]:
+def reference(t: Floats, perturbation: float = 1.0) -> tuple[Floats, Floats, Floats]:
     """Heights [m] of the clamps on lower and upper wire, and the dropper's force [N]."""
     from scipy.integrate import solve_ivp
 
-    preload = slip * PRELOAD
+    preload = perturbation * PRELOAD
     below, above = 2 * np.sqrt(TENSION * MASS), 2 * np.sqrt(UPPER.tension * UPPER.mass_per_length)
 
     def dropper(lower: Floats, upper: Floats) -> Floats:
@@ -81,15 +81,23 @@ def clamps(motion: PairMotion) -> tuple[Floats, Floats]:
     return motion.lower.deflection[:, node], motion.upper.deflection[:, node]
 
 
-def compare_motion(motion: PairMotion, slip: float) -> list[Check]:
+def compare_motion(motion: PairMotion, perturbation: float) -> list[Check]:
     t = motion.lower.t
     names = (("clamp on the lower wire", "m"), ("clamp on the upper wire", "m"), ("dropper force", "N"))
     computed = (*clamps(motion), motion.dropper_force)
     return [
         compare_curves(
-            name, t, found, wanted, 0.005, source=SOURCE, reason=REASON, unit=unit, twin=unit == "N"
+            name,
+            t,
+            found,
+            wanted,
+            0.005,
+            source=SOURCE,
+            reason=REASON,
+            unit=unit,
+            negative_control=unit == "N",
         )
-        for (name, unit), found, wanted in zip(names, computed, reference(t, slip), strict=True)
+        for (name, unit), found, wanted in zip(names, computed, reference(t, perturbation), strict=True)
     ]
 
 

@@ -30,12 +30,12 @@ def compute(quick: bool) -> WireMotion:
 
 
 def exact(t: Floats, force: float = FORCE) -> Floats:
-    return theory.elastic_pantograph_force(t, **STRING, speed=SPEED, force=force, stiffness=STIFFNESS)
+    return theory.elastic_pantograph_force(STRING, t, speed=SPEED, force=force, stiffness=STIFFNESS)
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
-    force = exact(motion.t, slip * FORCE)
-    under = (slip * FORCE - force) / STIFFNESS
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
+    force = exact(motion.t, perturbation * FORCE)
+    under = (perturbation * FORCE - force) / STIFFNESS
     return [
         compare_curves(
             "contact force",

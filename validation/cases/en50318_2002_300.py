@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from validation.case import TWIN, Case
+from validation.case import PERTURBED, Case
 from validation.check import Check
 from validation.en50318 import RunData, draw_run, range_checks, run
 
@@ -15,8 +15,8 @@ def compute(quick: bool) -> RunData:
     return run(SPEED)
 
 
-def compare_run(data: RunData, slip: float) -> list[Check]:
-    return range_checks(data, SPEED, ranges_of=OTHER if slip == TWIN else SPEED)
+def compare_run(data: RunData, perturbation: float) -> list[Check]:
+    return range_checks(data, SPEED, ranges_of=OTHER if perturbation == PERTURBED else SPEED)
 
 
 def draw(data: RunData, figure: Figure) -> None:

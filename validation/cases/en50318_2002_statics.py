@@ -43,10 +43,16 @@ def compute(quick: bool) -> Statics:
     return Statics(droppers, 1e3 * at_places.values, x, 1e3 * curve.values)
 
 
-def compare_statics(statics: Statics, slip: float) -> list[Check]:
+def compare_statics(statics: Statics, perturbation: float) -> list[Check]:
     droppers = [
         compare(
-            f"force of dropper {i + 1}", force, wanted * slip, 0.005, source=SOURCE, reason=FORCES, unit="N"
+            f"force of dropper {i + 1}",
+            force,
+            wanted * perturbation,
+            0.005,
+            source=SOURCE,
+            reason=FORCES,
+            unit="N",
         )
         for i, (force, wanted) in enumerate(zip(statics.droppers, DROPPERS, strict=True))
     ]
@@ -54,12 +60,12 @@ def compare_statics(statics: Statics, slip: float) -> list[Check]:
         compare(
             f"elasticity at {x:g} m",
             found,
-            wanted * slip,
+            wanted * perturbation,
             0.02,
             source=SOURCE,
             reason=LIFT,
             unit="mm/N",
-            twin=False,
+            negative_control=False,
         )
         for x, found, wanted in zip(PLACES, statics.elasticity, ELASTICITY, strict=True)
     ]

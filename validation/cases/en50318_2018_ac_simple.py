@@ -85,12 +85,12 @@ def compute(quick: bool) -> RunData:
     )
 
 
-def compare_runs(data: RunData, slip: float) -> list[Check]:
+def compare_runs(data: RunData, perturbation: float) -> list[Check]:
     checks = [
         compare(
             "mean force against 0.00097 v² + 70 N",
             data.nonlinear[0],
-            slip * cf.target_mean_force("EN 50367 AC", SPEED / 3.6),
+            perturbation * cf.target_mean_force("EN 50367 AC", SPEED / 3.6),
             5e-3,
             source="EN 50367 (secondary source)",
             reason=HALVES,
@@ -102,7 +102,7 @@ def compare_runs(data: RunData, slip: float) -> list[Check]:
     linear = compare(
         "standard deviation, linearised against nonlinear run",
         data.linearised[sigma],
-        data.nonlinear[sigma] * (1 + 10 * (slip - 1)),
+        data.nonlinear[sigma] * (1 + 10 * (perturbation - 1)),
         1e-2,
         source="the nonlinear run",
         reason=LINEAR,
@@ -122,7 +122,7 @@ def _beside(row: tuple[str, str, float, float], value: float) -> Check:
         source=RECALLED,
         passed=None,
         reason="the accepted range; the error is the distance outside it in units of its half width",
-        twin=False,
+        negative_control=False,
     )
 
 
@@ -142,7 +142,7 @@ def _without_reference(data: RunData) -> list[Check]:
             source="none; linearised runs",
             passed=None,
             reason="there is nothing to compare with",
-            twin=False,
+            negative_control=False,
         )
         for what, values in rows
     ]

@@ -28,12 +28,12 @@ def compute(quick: bool) -> WireMotion:
 
 
 def exact(x: Floats | float, t: Floats | float) -> Floats:
-    return theory.force_at_rest(x, t, **STRING, force=force())
+    return theory.force_at_rest(STRING, x, t, force=force())
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
     x, t = motion.x, motion.t
-    whole, under = slip * exact(x, TIME), slip * exact(0.0, t)
+    whole, under = perturbation * exact(x, TIME), perturbation * exact(0.0, t)
     return [
         compare_curves(
             "deflection at 0.5 s", x, motion.at(TIME), whole, 0.005, source=SOURCE, reason=REASON, unit="m"

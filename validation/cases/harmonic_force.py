@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
-from validation.case import TWIN, Case
+from validation.case import PERTURBED, Case
 from validation.check import Check, compare_curves
 from validation.paper_wire import MASS, PAPER, STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
@@ -31,10 +31,10 @@ def under_force(t: Floats, sign: float = -1.0) -> Floats:
     return np.asarray((MEAN * t + varying) / (2 * MASS * C))
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
-    sign = 1.0 if slip == TWIN else -1.0
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
+    sign = 1.0 if perturbation == PERTURBED else -1.0
     force = theory.HarmonicForce(mean=MEAN, amplitude=-sign * AMPLITUDE, angular_frequency=FREQUENCY)
-    exact = theory.moving_force(motion.x, TIME, **STRING, speed=SPEED, force=force)
+    exact = theory.moving_force(STRING, motion.x, TIME, speed=SPEED, force=force)
     under = motion.under_loads[:, 0]
     return [
         compare_curves(
@@ -62,7 +62,7 @@ def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
 
 def draw(motion: WireMotion, figure: Figure) -> None:
     left, right = figure.subplots(1, 2)
-    exact = theory.moving_force(motion.x, TIME, **STRING, speed=SPEED, force=FORCE)
+    exact = theory.moving_force(STRING, motion.x, TIME, speed=SPEED, force=FORCE)
     left.plot(motion.x, 1e3 * motion.at(TIME), **COMPUTED, label="ANCF")
     left.plot(motion.x, 1e3 * exact, **REFERENCE, label="closed form")
     label(left, "x in m", "deflection in mm", f"t = {TIME:g} s, V = 0.725 c")

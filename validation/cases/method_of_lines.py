@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
-from validation.case import TWIN, Case
+from validation.case import PERTURBED, Case
 from validation.check import Check, compare_curves
-from validation.paper_wire import FORCE, PAPER, STRING, C, Floats, run, wire
+from validation.paper_wire import FORCE, PAPER, TENSION, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
 BENDING, TIME = 200e3, 0.5
@@ -56,8 +56,8 @@ def _both(ratio: float, supports: Floats, step: float) -> Runs:
     load = theory.MovingForce(force=FORCE, speed=ratio * C)
     x = even_nodes([*ENDS, *supports], 0.25)
     ancf = []
-    for slip in (1.0, TWIN):
-        tensioned = wire(BENDING, tension=slip * STRING["tension"])
+    for perturbation in (1.0, PERTURBED):
+        tensioned = wire(BENDING, tension=perturbation * TENSION)
         problem = WireProblem(wire=tensioned, x=x, supports=supports.tolist(), loads=[load])
         ancf.append(run(problem, TIME, step=step, interval=TIME).deflection[-1])
     coarse, fine = (_by_lines(x, supports, load, interval) for interval in INTERVALS)
@@ -68,9 +68,8 @@ def _by_lines(x: Floats, supports: Floats, load: theory.MovingForce, interval: f
     from scipy.interpolate import CubicSpline
 
     lines = theory.solve_by_lines(
+        wire(BENDING).beam,
         [TIME],
-        **STRING,
-        bending_stiffness=BENDING,
         ends=ENDS,
         intervals=round((ENDS[1] - ENDS[0]) / interval),
         supports=supports,
@@ -79,12 +78,12 @@ def _by_lines(x: Floats, supports: Floats, load: theory.MovingForce, interval: f
     return np.asarray(CubicSpline(lines.x, lines.deflection[-1])(x))
 
 
-def compare_runs(runs: dict[str, Runs], slip: float) -> list[Check]:
+def compare_runs(runs: dict[str, Runs], perturbation: float) -> list[Check]:
     return [
         compare_curves(
             f"{name}: deflection at {TIME:g} s",
             pair.x,
-            pair.off if slip == TWIN else pair.ancf,
+            pair.off if perturbation == PERTURBED else pair.ancf,
             pair.lines,
             0.002 if name.startswith("free") else 0.01,
             source=SOURCE,

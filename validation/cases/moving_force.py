@@ -50,10 +50,10 @@ def compute(quick: bool) -> dict[float, Curve]:
     return runs
 
 
-def compare_runs(runs: dict[float, Curve], slip: float) -> list[Check]:
+def compare_runs(runs: dict[float, Curve], perturbation: float) -> list[Check]:
     checks = []
     for ratio, (x, u, under) in runs.items():
-        exact = theory.moving_force(x, TIME, **STRING, speed=ratio * C, force=slip * FORCE)
+        exact = theory.moving_force(STRING, x, TIME, speed=ratio * C, force=perturbation * FORCE)
         if ratio == 1.0:
             away = np.abs(x - C * TIME) > 2.0
             name = "V = c: deflection outside 2 m around the force"
@@ -67,14 +67,14 @@ def compare_runs(runs: dict[float, Curve], slip: float) -> list[Check]:
                     source=SOURCE,
                     reason=CRITICAL,
                     unit="m",
-                    twin=False,
+                    negative_control=False,
                 )
             )
             continue
         name = f"V = {ratio:g} c: deflection"
         checks.append(compare_curves(name, x, u, exact, 0.005, source=SOURCE, reason=WHOLE, unit="m"))
         if ratio < 1:
-            exact_under = slip * FORCE * TIME / (2 * STRING["mass_per_length"] * C)
+            exact_under = perturbation * FORCE * TIME / (2 * STRING.impedance)
             checks.append(
                 compare(
                     f"V = {ratio:g} c: deflection under the force",
@@ -103,14 +103,14 @@ def draw(runs: dict[float, Curve], figure: Figure) -> None:
     label(near, "x in m", "deflection in mm", "V = c, around the force")
     for ratio, (x, u, _) in runs.items():
         if ratio != 1.0:
-            difference = u - theory.moving_force(x, TIME, **STRING, speed=ratio * C, force=FORCE)
+            difference = u - theory.moving_force(STRING, x, TIME, speed=ratio * C, force=FORCE)
             error.plot(x, 1e3 * difference, linewidth=0.8, label=f"{ratio:g} c")
     label(error, "x in m", "ANCF less closed form in mm", "V other than c")
     error.legend(fontsize=7, loc="upper left")
 
 
 def _draw_both(ax: Axes, x: Floats, u: Floats, ratio: float) -> None:
-    exact = theory.moving_force(x, TIME, **STRING, speed=ratio * C, force=FORCE)
+    exact = theory.moving_force(STRING, x, TIME, speed=ratio * C, force=FORCE)
     ax.plot(x, 1e3 * u, **COMPUTED, label="ANCF")
     ax.plot(x, 1e3 * exact, **REFERENCE, label="closed form")
 

@@ -55,18 +55,18 @@ def compute(quick: bool) -> dict[str, WireMotion]:
     return runs
 
 
-def exact(x: Floats, name: str, slip: float = 1.0) -> Floats:
-    values: dict[str, Any] = {key: slip * value for key, value in OBSTACLES[name].items()}
+def exact(x: Floats, name: str, perturbation: float = 1.0) -> Floats:
+    values: dict[str, Any] = {key: perturbation * value for key, value in OBSTACLES[name].items()}
     step = WIDTH / C
     return theory.pulse_at_obstacle(
-        x, TIME, **STRING, incident=incident, begin=BEGIN / C - 6 * step, longest_step=step, **values
+        STRING, x, TIME, incident=incident, begin=BEGIN / C - 6 * step, longest_step=step, **values
     )
 
 
-def compare_runs(runs: dict[str, WireMotion], slip: float) -> list[Check]:
+def compare_runs(runs: dict[str, WireMotion], perturbation: float) -> list[Check]:
     checks = []
     for name, motion in runs.items():
-        x, u, reference = motion.x, motion.deflection[-1], exact(motion.x, name, slip)
+        x, u, reference = motion.x, motion.deflection[-1], exact(motion.x, name, perturbation)
         for side, part in (("echo", x <= 0), ("what goes on", x >= 0)):
             checks.append(
                 compare_curves(

@@ -9,7 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
-from validation.paper_wire import MASS, PAPER, TENSION, Floats, run, wire
+from validation.paper_wire import PAPER, TENSION, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
 LENGTH, PLACE, WIDTH, HEIGHT = 60.0, 20.0, 2.0, 0.005
@@ -27,18 +27,18 @@ def compute(quick: bool) -> WireMotion:
     return run(problem, TIMES[-1], step=2.5e-4 if quick else 1.25e-4, interval=0.05, spectral_radius=1.0)
 
 
-def exact(x: Floats, t: float, slip: float = 1.0) -> Floats:
-    speed = theory.wave_speed(tension=slip * TENSION, mass_per_length=MASS)
-    return theory.reflected_waves(x, t, wave_speed=speed, length=LENGTH, initial_deflection=bell)
+def exact(x: Floats, t: float, perturbation: float = 1.0) -> Floats:
+    string = wire(tension=perturbation * TENSION).beam
+    return theory.reflected_waves(string, x, t, length=LENGTH, initial_deflection=bell)
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
     return [
         compare_curves(
             f"deflection at {t:g} s",
             motion.x,
             motion.at(t),
-            exact(motion.x, t, slip),
+            exact(motion.x, t, perturbation),
             0.005,
             source=SOURCE,
             reason=REASON,

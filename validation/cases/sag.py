@@ -38,8 +38,8 @@ def compute(quick: bool) -> tuple[Floats, Floats]:
     return x, wire_at_rest(WireProblem(wire=wire(), x=x, weight=True, initial_deflection=parabola))
 
 
-def compare_curve(curve: tuple[Floats, Floats], slip: float) -> list[Check]:
-    sag, tension = -float(curve[1].min()), slip * TENSION
+def compare_curve(curve: tuple[Floats, Floats], perturbation: float) -> list[Check]:
+    sag, tension = -float(curve[1].min()), perturbation * TENSION
     references = (
         ("sag, catenary", -float(catenary(LENGTH / 2, tension)), CATENARY),
         ("sag, parabola", weight() * LENGTH**2 / (8 * tension), PARABOLA),

@@ -34,21 +34,21 @@ def compute(quick: bool) -> WireMotion:
     return run(problem, TIME, step=1e-3 if quick else 5e-4)
 
 
-def exact(t: Floats, slip: float = 1.0) -> theory.SlidingOscillator:
+def exact(t: Floats, perturbation: float = 1.0) -> theory.SlidingOscillator:
     values: dict[str, Any] = {"base_stiffness": BASE, "base_damping": DAMPING}
     return theory.sliding_oscillator(
+        STRING,
         t,
-        **STRING,
         speed=SPEED,
         mass=MASS,
         contact_stiffness=CONTACT,
-        uplift_force=slip * UPLIFT,
+        uplift_force=perturbation * UPLIFT,
         **values,
     )
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
-    reference = exact(motion.t, slip)
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
+    reference = exact(motion.t, perturbation)
     pairs = (
         ("contact force", motion.forces, reference.force, "N"),
         ("height of the mass", motion.heads, reference.mass_height, "m"),

@@ -28,7 +28,7 @@ REASON = (
 def compute(quick: bool) -> Curves:
     curves = {}
     for bending in BENDING:
-        layer = theory.boundary_layer_length(tension=TENSION, bending_stiffness=bending)
+        layer = wire(bending).beam.boundary_layer_length
         x = graded_nodes([0, LENGTH], 0.5, kinks=[MIDDLE], finest=min(0.5, layer / 5), growth=1.25)
         load = theory.MovingForce(force=FORCE, speed=0.0, start=MIDDLE)
         curves[bending] = x, wire_at_rest(WireProblem(wire=wire(bending), x=x, loads=[load]))
@@ -36,20 +36,18 @@ def compute(quick: bool) -> Curves:
 
 
 def exact(x: Floats, bending: float, tension: float = TENSION) -> Floats:
-    values = {"tension": tension, "bending_stiffness": bending, "length": LENGTH}
-    return theory.beam_point_force(x, **values, position=MIDDLE, force=FORCE)
+    beam = wire(bending, tension=tension).beam
+    return theory.static_deflection(beam, x, length=LENGTH, position=MIDDLE, force=FORCE)
 
 
 def near(x: Floats, bending: float) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    return np.asarray(
-        np.abs(x - MIDDLE) <= 4 * theory.boundary_layer_length(tension=TENSION, bending_stiffness=bending)
-    )
+    return np.asarray(np.abs(x - MIDDLE) <= 4 * wire(bending).beam.boundary_layer_length)
 
 
-def compare_curves_(curves: Curves, slip: float) -> list[Check]:
+def compare_curves_(curves: Curves, perturbation: float) -> list[Check]:
     checks = []
     for bending, (x, u) in curves.items():
-        reference, under = exact(x, bending, slip * TENSION), int(np.abs(x - MIDDLE).argmin())
+        reference, under = exact(x, bending, perturbation * TENSION), int(np.abs(x - MIDDLE).argmin())
         name = f"EI = {bending:g} N m²"
         checks.append(
             compare(
@@ -63,9 +61,8 @@ def compare_curves_(curves: Curves, slip: float) -> list[Check]:
             )
         )
         inside = near(x, bending)
-        layer = theory.beam_point_force_unbounded(
-            x[inside], tension=slip * TENSION, bending_stiffness=bending, force=FORCE, position=MIDDLE
-        )
+        beam = wire(bending, tension=perturbation * TENSION).beam
+        layer = theory.static_deflection_unbounded(beam, x[inside], force=FORCE, position=MIDDLE)
         checks.append(
             compare_curves(
                 f"{name}: drop within four boundary layers of the force",

@@ -9,7 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, graded_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
-from validation.paper_wire import PAPER, STRING, C, Floats, run, wire
+from validation.paper_wire import PAPER, TENSION, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
 SUPPORTS = np.arange(0.0, 61.0, 6.0)
@@ -37,18 +37,18 @@ def compute(quick: bool) -> WireMotion:
     return run(problem, end, step=step, interval=0.01)
 
 
-def exact(x: Floats, t: float, slip: float = 1.0) -> Floats:
-    string = {**STRING, "tension": slip * STRING["tension"]}
-    return theory.moving_force_on_supports(x, t, **string, supports=SUPPORTS, speed=SPEED, force=FORCE)
+def exact(x: Floats, t: float, perturbation: float = 1.0) -> Floats:
+    string = wire(tension=perturbation * TENSION).beam
+    return theory.moving_force_on_supports(string, x, t, supports=SUPPORTS, speed=SPEED, force=FORCE)
 
 
-def compare_motion(motion: WireMotion, slip: float) -> list[Check]:
+def compare_motion(motion: WireMotion, perturbation: float) -> list[Check]:
     return [
         compare_curves(
             f"deflection at {t:g} s",
             motion.x,
             motion.at(t),
-            exact(motion.x, t, slip),
+            exact(motion.x, t, perturbation),
             0.01,
             source=SOURCE,
             reason=REASON,
