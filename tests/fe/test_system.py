@@ -10,8 +10,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
-from catenary_fe.engines.exudyn.model import build_model
-from catenary_fe.engines.exudyn.solver import release, solve_static
+from catenary_fe.engines.exudyn.solver import solve_static
 from catenary_fe.fe.system import System, assemble
 
 LAYOUTS = sorted((Path(__file__).parents[2] / "models" / "layouts").glob("*.toml"))
@@ -120,10 +119,9 @@ def assembled_by_exudyn(mbs: exu.MainSystem, moved: np.ndarray) -> Assembled:
 @pytest.fixture(scope="module")
 def exudyn_at(shape) -> Iterator[Callable[[np.ndarray], Assembled]]:
     """What Exudyn assembles of the line, at given displacements."""
-    mbs = build_model(shape.catenary, shape.mesh, shape.installation).mbs
-    mbs.Assemble()
-    yield lambda moved: assembled_by_exudyn(mbs, moved)
-    release(mbs)
+    model = cf.exudyn_model(shape)
+    yield lambda moved: assembled_by_exudyn(model.mbs, moved)
+    model.release()
 
 
 def assert_equal_to_rounding(system: System, theirs: Assembled, moved: np.ndarray) -> None:
@@ -162,12 +160,12 @@ def test_a_dropper_that_is_stiffer_by_a_thousandth_is_seen(system, moved, exudyn
 
 
 def test_exudyn_finds_the_same_equilibrium(shape):
-    model = build_model(shape.catenary, shape.mesh, shape.installation)
-    model.mbs.Assemble()
+    model = cf.exudyn_model(shape)
     solve_static(model.mbs, what="the same line")
     found = model.mbs.systemData.GetODE2Coordinates()
-    tensions = model.dropper_forces()
-    release(model.mbs)
+    force = exu.OutputVariableType.ForceLocal
+    tensions = [model.mbs.GetObjectOutput(dropper, force) for dropper in model.droppers]
+    model.release()
     assert np.abs(found).max() < 1e-6  # [m] from where the wires were installed
     assert tensions == pytest.approx(shape.dropper_forces, abs=0.1)
 

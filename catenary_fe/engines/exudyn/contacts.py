@@ -268,7 +268,7 @@ class Contacts:
         e, _ = path.at(position)
         local = float((position - path.x[e]) / (path.x[e + 1] - path.x[e]) * path.lengths[e])
         element, place = self._wires[contact.wire].elements[e], [local, 0, 0]
-        changed = bool(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber") != element)
+        changed = int(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber")) != element
         if changed:
             mbs.SetMarkerParameter(contact.wire_marker, "bodyNumber", element)
         mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
