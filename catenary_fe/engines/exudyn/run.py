@@ -25,6 +25,7 @@ from catenary_fe.statics.contact import static_contact
 Floats = NDArray[np.float64]
 STRETCH = 25  # steps that are divided from where one failed
 MOST_PARTS = 8
+_ALONG = exu.OutputVariableType.ForceLocal  # of a dropper
 _BOTH = exu.ConfigurationType.Initial, exu.ConfigurationType.Current
 
 _log = logging.getLogger(__name__)
@@ -70,8 +71,6 @@ class ExudynEngine:
         try:
             _start(model, case, uplifts, settle=self._model is not None)
             recorder = _Recorder(model, case, uplifts, self._time, (self._every, self._energy_every))
-            if self._model is not None:
-                recorder.read_droppers_from_connectors()
             try:
                 _integrate(model, case, recorder, self._time, progress)
             except (SolverError, KeyboardInterrupt) as error:
@@ -189,14 +188,9 @@ class _Recorder:
         self._balance = _EnergyBalance(model, uplifts, steps, every[1]) if every[1] else None
         self._tension = TensionRecord(TensionGauge(system))
         self._tension_every = max(1, round(INTERVAL / time.step))
-        self._connectors: list[int] = []
         self._notes: dict[float, int] = {}
         self.done = -1
         self.state = np.zeros(0), np.zeros(0)
-
-    def read_droppers_from_connectors(self) -> None:
-        """Their law may be another one than that of the line."""
-        self._connectors = self._model.droppers
 
     def _positions(self, step: int) -> Floats:
         positions: Floats = self._case.start + self._case.speed * self._step * step
@@ -209,7 +203,7 @@ class _Recorder:
         model, contacts, system = self._model, self._contacts, self._model.system
         data = model.mbs.systemData
         q, v = self.state = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
-        all_q, positions, nominal = q[: system.place.size], self._positions(n), system.contact_wire_height
+        nominal = system.contact_wire_height
         forces = [[contacts.force(c) for c in parts.contacts] for parts in model.pantographs]
         for i, parts in enumerate(model.pantographs):
             self._force[i, n] = sum(forces[i])
@@ -217,27 +211,14 @@ class _Recorder:
             self._wire_height[i, n] = sum(heights) / len(heights) - nominal
             self._masses[i][:, n] = [contacts.height(marker) - nominal for marker in parts.masses]
         self._support[:, :, n] = q[self._support_index]
-        self._dropper[:, n], drag, length = self._dropper_forces(all_q, v)
+        self._dropper[:, n] = [model.mbs.GetObjectOutput(d, _ALONG) for d in model.droppers]
         if self._every and n % self._every == 0:
             self._wire.append(q[system.heights])
         if n % self._tension_every == 0:
-            self._tension.read(self._step * n, all_q)
+            self._tension.read(self._step * n, q)
         if self._balance:
-            self._balance.record(n, q, v, positions, forces, (drag, length))
+            self._balance.record(n, q, v, self._positions(n), forces, self._dropper[:, n])
         self.done = n
-
-    def _dropper_forces(self, q: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-        """Tensions [N], the dampers' part of them, and lengths [m], each of shape (droppers,)."""
-        droppers = self._model.system.droppers
-        span = droppers.span(self._model.system.reference + q)
-        length = np.linalg.norm(span, axis=1)
-        spring = droppers.tension(span)
-        rate = (droppers.span(v) * span).sum(axis=1) / length
-        drag = np.clip(droppers.damping * rate, -spring, spring)
-        if self._connectors:
-            output, local = self._model.mbs.GetObjectOutput, exu.OutputVariableType.ForceLocal
-            return np.array([output(d, local) for d in self._connectors]), drag, length
-        return spring + drag, drag, length
 
     def note_smaller_steps(self, parts: int) -> None:
         """Remember for the result that steps were divided, and from when on."""
@@ -306,7 +287,8 @@ class _EnergyBalance:
 
     def __init__(self, model: ExudynModel, uplifts: Floats, steps: int, every: int) -> None:
         self.every, self._model, self._contacts = every, model, model.contacts
-        self._damping = model.system.damping()
+        self._damping, self._droppers = model.system.damping(), model.system.droppers
+        self._line = model.system.place.size
         self._bodies = [
             (parts, parts.substructure, parts.index(model.mbs), float(uplift))
             for parts, uplift in zip(model.pantographs, uplifts, strict=True)
@@ -328,15 +310,17 @@ class _EnergyBalance:
         v: Floats,
         positions: Floats,
         forces: list[list[float]],
-        droppers: tuple[Floats, Floats],
+        droppers: Floats,
     ) -> None:
         """Take down step ``n``'s end.
 
         positions : [m] of the pantographs
         forces : [N] of each pantograph's contacts
-        droppers : [N] and [m], shape (droppers,): the dampers' part of their forces, and their lengths
+        droppers : [N], shape (droppers,), tensions
         """
-        now = (q, self._contact_forces(q.size, positions, forces), self._drag(v), *droppers)
+        span = self._droppers.span(self._model.system.reference + q[: self._line])
+        drag, length = droppers - self._droppers.tension(span), np.linalg.norm(span, axis=1)
+        now = (q, self._contact_forces(q.size, positions, forces), self._drag(v), drag, length)
         if self._before is not None:
             before = self._before
             moved = q - before[0]
@@ -361,16 +345,16 @@ class _EnergyBalance:
 
     def _drag(self, v: Floats) -> Floats:
         """[N], shape (coordinates,), of all linear dampers: of droppers' and contacts', none."""
-        line, drag = self._model.system.place.size, np.zeros(v.size)
-        drag[:line] = self._damping @ v[:line]
+        drag = np.zeros(v.size)
+        drag[: self._line] = self._damping @ v[: self._line]
         for _, body, index, _ in self._bodies:
             drag[index] = body.damping @ v[index]
         return drag
 
     def _energy_of(self, q: Floats, v: Floats) -> float:
         """[J] above an arbitrary zero."""
-        system, line = self._model.system, self._model.system.place.size
-        total = system.energy(q[:line]) + float(v[:line] @ (system.mass @ v[:line]) / 2)
+        system, moving = self._model.system, v[: self._line]
+        total = system.energy(q[: self._line]) + float(moving @ (system.mass @ moving) / 2)
         for _, body, index, uplift in self._bodies:
             y, w = q[index], v[index]
             total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - uplift * body.load @ y)
