@@ -230,7 +230,7 @@ def test_bodies_that_find_no_contact_are_an_error(shape, pushed):
     stages = tuple(stage.replace(stiffness=0.0) for stage in pushed.stages)
     points = add_masses(model, pushed.replace(stages=stages), 120.0)
     model.attach("mine", points[:1], contact_stiffness=50e3)
-    with pytest.raises(cf.SolverError, match="static contact at the start: no static equilibrium found"):
+    with pytest.raises(cf.SolverError, match=r"static contact at the start: no static .* at the pantographs"):
         simulate(shape, [], model)
     model.release()
 

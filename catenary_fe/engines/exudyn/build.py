@@ -77,6 +77,11 @@ class ExudynModel:
         """The stitch wires, none without them."""
         return self.wires[len(self.system.contact_paths) + 1 :]
 
+    def name(self, coordinate: int) -> str:
+        """A coordinate of the assembled ``mbs`` in words."""
+        known = coordinate < self.system.place.size
+        return self.system.name(coordinate) if known else "pantographs"
+
     @property
     def records(self) -> list[AnyPantograph]:
         """What results record of the pantographs."""

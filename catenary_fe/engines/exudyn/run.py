@@ -105,7 +105,7 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
     _set_state(model, q, np.zeros_like(q))
     if settle:
-        solve_static(mbs, what="static contact at the start")
+        solve_static(mbs, what="static contact at the start", name=model.name)
 
 
 def _set_state(model: ExudynModel, q: Floats, v: Floats) -> None:

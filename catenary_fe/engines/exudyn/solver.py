@@ -11,7 +11,6 @@ from typing import Any, Self
 import exudyn as exu
 import numpy as np
 
-from catenary_fe.engines.faults import place_of_fault
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import SolverError
 
@@ -35,22 +34,25 @@ def release(system: exu.MainSystem) -> None:
     system.variables.pop("container").Reset()
 
 
-def solve_static(mbs: exu.MainSystem, *, what: str) -> None:
+def solve_static(
+    mbs: exu.MainSystem, *, what: str, name: Callable[[int], str] = "coordinate {}".format
+) -> None:
     """Solve for static equilibrium and make the result the initial state.
 
     In one load step; where that fails, in many, stabilised, and from there in one again.
 
     what : the case in words, for the error's text
+    name : of a coordinate in words, likewise
 
     Raises SolverError, with the place where the solve ran away, if the Newton iteration does not converge.
     """
     start = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if not (_settled(mbs) or (_settled(mbs, LOAD_STEPS) and _settled(mbs))):
-        place = place_of_fault(mbs, start)
+        moved = np.nan_to_num(np.abs(mbs.systemData.GetODE2Coordinates() - start), nan=np.inf)
         raise SolverError(
-            f"{what}: no static equilibrium found, neither at once nor in {LOAD_STEPS} steps of the load;"
-            f" {place + '; ' if place else ''}look there for tensions, lengths, stiffnesses or forces that"
-            " are far from usual values, or refine the mesh"
+            f"{what}: no static equilibrium found, neither at once nor in {LOAD_STEPS} steps of the load; the"
+            f" solve ran away at the {name(int(moved.argmax()))}; look there for tensions, lengths,"
+            " stiffnesses or forces that are far from usual values, or refine the mesh"
         )
 
 

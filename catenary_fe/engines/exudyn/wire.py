@@ -13,7 +13,6 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.faults import remember_wire
 from catenary_fe.fe.installation import WireLine
 from catenary_fe.layout import Wire
 
@@ -72,8 +71,6 @@ def add_wire(mbs: exu.MainSystem, wire: Wire, line: WireLine) -> WireItems:
         )
         for i, length in enumerate(line.lengths.tolist())
     ]
-    name = f"the wire '{wire.name}'" if wire.name else "a wire"
-    remember_wire(mbs, f"{name} under {wire.tension:g} N", line.x, nodes[0], 2 * line.axes)
     return WireItems(nodes, elements, wire, line)
 
 
