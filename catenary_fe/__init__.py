@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
+    from catenary_fe.engines.exudyn import ExudynModel, exudyn_model
     from catenary_fe.engines.exudyn.wire_run import run_wire
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
@@ -60,7 +60,7 @@ _ROOMS = {
     "engines.modal.modes": ("solve_modes",),
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
-    "engines.exudyn.build": ("ExudynModel", "exudyn_model"),
+    "engines.exudyn": ("ExudynModel", "exudyn_model"),
     "engines.exudyn.wire_run": ("run_wire",),
     "statics": ("Shape", "find_form", "find_heights"),
     "statics.elasticity": ("StaticState", "elasticity", "solve_statics"),
