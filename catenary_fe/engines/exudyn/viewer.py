@@ -44,7 +44,7 @@ def view_model(shape: Shape, spans: tuple[int, int], *, wait: bool = True) -> ND
     settings.loads.show = False
     settings.general.rendererStartupTimeout = 30_000  # ms, for a busy machine
     try:
-        started = container.renderer.InitialState()
+        started = container.renderer.Start()
     except exu.InternalError:
         started = False
     if not started:
