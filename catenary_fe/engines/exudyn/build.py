@@ -195,7 +195,7 @@ def _add_wires(mbs: exu.MainSystem, system: System) -> tuple[WireParts, ...]:
     new_element = eii.ObjectANCFCable if spatial else eii.ObjectANCFCable2D
     rows = system.reference.reshape(-1, width)
     nodes = [int(mbs.AddNode(new_node(referenceCoordinates=list(row)))) for row in rows]
-    begins, cables = system.first // width, system.cables
+    begins, cables = (system.first // width).tolist(), system.cables
     elements = [
         int(
             mbs.AddObject(
@@ -210,7 +210,7 @@ def _add_wires(mbs: exu.MainSystem, system: System) -> tuple[WireParts, ...]:
                 )
             )
         )
-        for i, begin in enumerate(begins.tolist())
+        for i, begin in enumerate(begins)
     ]
     parts = []
     for wire in system.wires:

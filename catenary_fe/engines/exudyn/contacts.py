@@ -248,6 +248,7 @@ class Contacts:
     ) -> None:
         self._mbs, self._wires, self._pantographs = mbs, wires, pantographs
         self._paths, self._up = system.contact_paths, system.axes - 1
+        self._element: dict[int, int] = {}  # of each connector, where it is known
 
     def move_to(self, positions: Sequence[float] | Floats, speed: float) -> None:
         """Put the pantographs at these positions [m] along the track, shape (pantographs,), at a speed [m/s].
@@ -265,11 +266,11 @@ class Contacts:
     def _move(self, contact: ContactParts, position: float, speed: float) -> bool:
         """True if the contact is on another element than before."""
         mbs, path = self._mbs, self._paths[contact.wire]
-        e, _ = path.at(position)
-        local = float((position - path.x[e]) / (path.x[e + 1] - path.x[e]) * path.lengths[e])
-        element, place = self._wires[contact.wire].elements[e], [local, 0, 0]
-        changed = int(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber")) != element
+        e, share = path.locate(position)
+        element, place = self._wires[contact.wire].elements[e], [share * float(path.lengths[e]), 0, 0]
+        changed = self._element.get(contact.connector) != element
         if changed:
+            self._element[contact.connector] = element
             mbs.SetMarkerParameter(contact.wire_marker, "bodyNumber", element)
         mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
         if contact.rolls:

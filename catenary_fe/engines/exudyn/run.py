@@ -123,6 +123,7 @@ def _integrate(
 
     Raises SolverError where the smallest ones fail, too.
     """
+    contacts = model.contacts
     what, parts, steps = f"run at {3.6 * case.speed:g} km/h", 1, case.steps(time.step)
     while recorder.done < steps:
         first = max(recorder.done, 0)
@@ -133,7 +134,7 @@ def _integrate(
             count = round(end / step)
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
-            model.place(case.start + case.speed * end, case.speed)
+            contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
 
@@ -155,7 +156,7 @@ def _integrate(
             recorder.note_smaller_steps(parts)
         if recorder.done < steps:
             _set_state(model, *recorder.state)
-            model.place(case.start + case.speed * time.step * recorder.done, case.speed)
+            contacts.move_to(case.start + case.speed * time.step * recorder.done, case.speed)
 
 
 class _Recorder:
