@@ -80,6 +80,16 @@ def test_parts_go_by_station_and_name(shape, pushed):
     model.release()
 
 
+def test_strips_on_one_spring_share_the_uplift(shape, pushed):
+    head = cf.Panhead(strips=2, strip_distance=0.4)
+    model = cf.exudyn_model(shape, [pushed.replace(stages=pushed.stages[:1], head=head)])
+    model.lift([90.0])
+    (parts,) = model.pantographs
+    assert [model.mbs.GetLoadParameter(load, "load") for load, _ in parts.loads] == [45.0, 45.0]
+    assert [contact.ahead for contact in parts.contacts] == [0.2, -0.2]
+    model.release()
+
+
 def test_parts_in_space(reference_layout):
     """Bars at the masts, clamps of stitch wires, a head on two springs that meets each wire at its place."""
     folder = reference_layout.parent
@@ -104,10 +114,12 @@ def test_parts_in_space(reference_layout):
     model.release()
 
 
-def test_a_model_that_was_not_changed_runs_as_the_line_does(shape, pushed, plain):
-    model = cf.exudyn_model(shape, [pushed])
-    first, second = (simulate(shape, [pushed], model) for _ in range(2))
+def test_a_model_that_was_not_changed_runs_as_the_line_does(shape, pushed):
+    """And again; for longer than a second, which is the time that Exudyn's static solver ends at."""
+    model, plain = cf.exudyn_model(shape, [pushed]), simulate(shape, [pushed], speed=50.0)
+    first, second = (simulate(shape, [pushed], model, speed=50.0) for _ in range(2))
     model.release()
+    assert plain.time[-1] > 1
     assert forces(first) == pytest.approx(forces(plain), abs=1e-3)  # static contact by Exudyn, to 1e-9
     dropper = first.data["dropper_force"].values
     assert dropper == pytest.approx(plain.data["dropper_force"].values, abs=3e-3)
@@ -224,8 +236,7 @@ def test_a_model_of_another_line_or_pantograph(shape, pushed):
 
 
 def test_bodies_that_find_no_contact_are_an_error(shape, pushed):
-    """A mass far below the wire has no equilibrium but at its base's spring, 2.4 m higher; one without a
-    spring has none."""
+    """Masses without springs have no equilibrium."""
     model = cf.exudyn_model(shape)
     stages = tuple(stage.replace(stiffness=0.0) for stage in pushed.stages)
     points = add_masses(model, pushed.replace(stages=stages), 120.0)
