@@ -59,7 +59,7 @@ class PantographParameters(NamedTuple):
     preload : [N], shape (slots, contacts), force on a wire at the height of its strip
     points : shape (slots, contacts), number of points of the contact's law; 0: it is straight
     law : [m] and [N], shape (slots, contacts, points, 2), of wires above the strip and forces
-    speed : [m/s], shape (slots,)
+    speed : [m/s], shape (slots, contacts)
     last : shape (slots,), number of the run's last step
     nominal : [m], height that coordinates count from
     """

@@ -142,7 +142,7 @@ def update_contact(
             climb += shape[m] * (wires.v[i, c] + scheme.g * wires.x[i, c])
             wire_compliance += shape[m] * column[i - first]
             turn += rise[m] * column[i - first]
-    climb += heads.speed[c] * slope
+    climb += heads.speed[c, j] * slope
     head, rate, light = 0.0, 0.0, 0.0
     for s in range(pantographs.x.shape[2]):
         row = work.head[c, j, s]
@@ -151,7 +151,7 @@ def update_contact(
         light += row * work.head_compliance[c, j, s]
     k, d, old = heads.k[c, j], heads.d[c, j], work.force[c, j]
     cs = k * scheme.b * (wire_compliance + light)
-    cd = d * (scheme.g * (wire_compliance + light) + heads.speed[c] * scheme.b * turn)
+    cd = d * (scheme.g * (wire_compliance + light) + heads.speed[c, j] * scheme.b * turn)
     spring, damper = k * (head - z) + heads.preload[c, j], d * (rate - climb)
     if heads.points[c, j]:
         compliance = scheme.b * (wire_compliance + light)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from catenary_fe.engines.arrays import Wires
+from catenary_fe.engines.arrays import Floats, Wires
 from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.settings import TimeSettings
 
@@ -14,6 +14,7 @@ class Scheme(NamedTuple):
 
     With x the accelerations at the step's end, there q = q* + b x and v = v* + g x. The next step has
     q* + h v* + qx x + qc c, then v* + vx x + vc c, and cx x + cc c.
+    The method's own accelerations are s x + c.
     """
 
     h: float
@@ -25,6 +26,7 @@ class Scheme(NamedTuple):
     vc: float
     cx: float
     cc: float
+    s: float
 
 
 def make_scheme(time: TimeSettings) -> Scheme:
@@ -50,6 +52,7 @@ def make_scheme(time: TimeSettings) -> Scheme:
         vc=h * (1 - gamma + gamma * cc),
         cx=cx,
         cc=cc,
+        s=s,
     )
 
 
@@ -71,3 +74,8 @@ def predict(scheme: Scheme, beta: float, wires: Wires) -> None:
         q[i], v[i], c[i] = advance(scheme, q[i], v[i], c[i], x[i])
     for i in range(x.size):
         w[i] = q[i] + beta * v[i]
+
+
+def at_start(scheme: Scheme, q: Floats, v: Floats, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """q*, v*, c and x of a state with these coordinates, velocities and accelerations."""
+    return q - scheme.b * x, v - scheme.g * x, (1 - scheme.s) * x, x

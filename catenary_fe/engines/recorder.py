@@ -88,7 +88,7 @@ def make_pantographs(
         preload=np.zeros(each),
         points=np.zeros(each, dtype=np.int64),
         law=np.zeros((*each, sizes.points, 2)),
-        speed=np.zeros(slots),
+        speed=np.zeros(each),
         last=np.zeros(slots, dtype=np.int64),
         nominal=nominal,
     )
@@ -161,7 +161,7 @@ def load_pantographs(
     count = len(start.contacts)
     records.force[slot, :count, 0] = np.concatenate([p.forces for p in start.pantographs])
     records.height[slot, :count, 0] = np.concatenate([p.wire_heights for p in start.pantographs])
-    heads.speed[slot], state.step[slot], heads.last[slot] = start.speed, 0, steps
+    heads.speed[slot, :], state.step[slot], heads.last[slot] = start.speed, 0, steps
     records.droppers[slot, :, 0] = start.dropper_force
     for found in (records.change, records.changed, records.shortening, records.shortened):
         found[slot] = 0
@@ -189,7 +189,7 @@ def read_history(
     of_each = [owner == p for p in range(len(pantographs))]
     return History(
         time=time,
-        position=at[:, None] + heads.speed[slot] * time,
+        position=at[:, None] + start.speed * time,
         contact_force=np.array([records.force[slot, mine, :n].sum(axis=0) for mine in of_each]),
         wire_height=np.array([records.height[slot, mine, :n].mean(axis=0) for mine in of_each]),
         mass_heights=[

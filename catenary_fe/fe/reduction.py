@@ -21,11 +21,8 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import tangent_blocks
 from catenary_fe.fe.contact import ContactPath
-from catenary_fe.fe.installation import element_pulls
-from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED
 from catenary_fe.fe.system import System
-from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -92,7 +89,8 @@ class LinearModel:
     links : steady arms that swing
     stretch : elements whose inclination lengthens a gap
     gaps : where these tensions are
-    spatial : whether it has coordinates to the side
+    imbalance : [N], shape (size,), what the line is out of balance where it was installed
+    spatial : whether it has coordinates across the track
     """
 
     mass: Any
@@ -108,6 +106,7 @@ class LinearModel:
     gaps: Gaps
     links: SteadyArmBars
     stretch: StretchCoupling
+    imbalance: Floats
     spatial: bool
 
     @property
@@ -117,21 +116,21 @@ class LinearModel:
 
     @property
     def load(self) -> Floats:
-        """[N], shape (size,), constant: holds the state at rest, where slack droppers do not push."""
-        load: Floats = -self.dropper_rows.T @ np.minimum(self.dropper_tension, 0.0)
+        """[N], shape (size,), constant: what is out of balance, and that slack droppers do not push."""
+        load: Floats = self.imbalance - self.dropper_rows.T @ np.minimum(self.dropper_tension, 0.0)
         return load
 
 
-def linear_model(system: System, catenary: Catenary, mesh: Mesh) -> LinearModel:
-    """The catenary's linearised model at static equilibrium."""
-    wires = _reduced_wires(system, catenary, mesh)
+def linear_model(system: System) -> LinearModel:
+    """The line linearised where it was installed."""
+    wires = _reduced_wires(system)
     whole, gaps = system.place.size, sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
     droppers = system.droppers
     span = droppers.span(system.reference)
     pull, push = droppers.tension(span), droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
-    D = catenary.damping.alpha * M + catenary.damping.beta * K
-    D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping), gaps)
+    D = system.alpha * M + system.beta * K
+    D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping) + system.linear_damping, gaps)
     K = K + _padded(system.spring_stiffness(), gaps)
     M = M + _padded(system.mass - system.wire_mass, gaps)
     T, place = _kept(system, wires, gaps)
@@ -150,6 +149,7 @@ def linear_model(system: System, catenary: Catenary, mesh: Mesh) -> LinearModel:
         gaps=_gaps(wires),
         links=_swinging_links(system, place),
         stretch=_stretch_coupling(system, wires, place),
+        imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
         spatial=system.spatial,
     )
 
@@ -212,15 +212,15 @@ class _ReducedWire:
     tension: Floats
 
 
-def _reduced_wires(system: System, catenary: Catenary, mesh: Mesh) -> list[_ReducedWire]:
+def _reduced_wires(system: System) -> list[_ReducedWire]:
     rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
     stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
     found, begin = [], 0
-    for number, pull in enumerate(element_pulls(catenary, mesh)):
-        part = slice(begin, begin + pull.size)
-        begin += pull.size
-        clamps, x = _clamps(mesh, number), system.wires[number].x
-        reduced = _reduced(stiffness[part], mass[part], system.elements()[part], clamps, x, pull)
+    for wire in system.wires:
+        part = slice(begin, begin + wire.tension.size)
+        begin += wire.tension.size
+        index = system.elements()[part]
+        reduced = _reduced(stiffness[part], mass[part], index, wire.clamps, wire.x, wire.tension)
         found.append(replace(reduced, lengths=system.cables.length[part]))
     return found
 
@@ -259,15 +259,6 @@ def _reduced(
         gap_x=x[clamps],
         tension=pull[clamps[:-1]],
     )
-
-
-def _clamps(mesh: Mesh, number: int) -> Integers:
-    """Nodes of a wire that something is fixed to, its ends among them."""
-    fixed = [mesh.lower.node[mesh.lower.on(number)], mesh.upper.node[mesh.upper.on(number)]]
-    fixed += [mesh.wires[number].supports, np.array([0, mesh.wires[number].x.size - 1])]
-    if number == mesh.contact_wires:
-        fixed.append(mesh.stitch_ends.ravel())
-    return np.unique(np.concatenate(fixed))
 
 
 def _assemble(wires: list[_ReducedWire], whole: int) -> tuple[Any, Any]:

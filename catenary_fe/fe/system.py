@@ -23,6 +23,7 @@ from catenary_fe.fe.installation import (
     Installation,
     curve_pulls,
     dropper_damping,
+    element_pulls,
     element_values,
     point_masses,
 )
@@ -42,6 +43,8 @@ class WireNodes:
     x : [m], shape (nodes,)
     contact : whether pantographs run along it
     supports : numbers of its own nodes at the supports
+    clamps : likewise where something is fixed to it, its ends among them: there its tension may step
+    tension : [N], shape (nodes - 1,), nominal pull along the track in each element
     """
 
     name: str
@@ -49,6 +52,8 @@ class WireNodes:
     x: Floats
     contact: bool
     supports: Integers
+    clamps: Integers
+    tension: Floats
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ class System:
     wire_mass, mass : sparse, [kg], over all coordinates: of the wires, and with what they carry
     droppers, arms : springs
     ground_stiffness, ground_damping : [N/m], [N s/m], shape (all,), of springs to the ground
+    linear_stiffness, linear_damping : [N/m], [N s/m], sparse, over all coordinates, of what else is linear
     force : [N], shape (all,), constant: weight, tensions, curves, preloads, balance
     alpha, beta : Rayleigh damping of the wires
     wires : contact wires, messenger wire, stitch wires
@@ -85,6 +91,8 @@ class System:
     arms: Springs
     ground_stiffness: Floats
     ground_damping: Floats
+    linear_stiffness: Any
+    linear_damping: Any
     force: Floats
     alpha: float
     beta: float
@@ -167,7 +175,7 @@ class System:
         """[N], shape (all,): constant forces less what the line answers to displacements ``moved``."""
         total = self.reference + moved
         index = self.elements()
-        residual = self.force - self.ground_stiffness * moved
+        residual: Floats = self.force - self.ground_stiffness * moved - self.linear_stiffness @ moved
         values = inner_forces(self.cables, total[index].reshape(-1, 4, self.axes))
         residual -= np.bincount(index.ravel(), values.ravel(), minlength=residual.size)
         for springs in (self.droppers, self.arms):
@@ -183,7 +191,8 @@ class System:
         """
         total = self.reference + moved
         parts = [self._wire_part(total), *self._spring_parts(total, taut)]
-        return scattered(parts, self.size, self.place)
+        linear = self.transformation.T @ self.linear_stiffness @ self.transformation
+        return scattered(parts, self.size, self.place) + linear
 
     def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
         index = self.elements()
@@ -205,7 +214,7 @@ class System:
         from scipy.sparse import diags
 
         rayleigh = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
-        return (rayleigh + diags(self.ground_damping)).tocsr()
+        return (rayleigh + diags(self.ground_damping) + self.linear_damping).tocsr()
 
     def elongations(self) -> Any:
         """Sparse, shape (droppers, all): each dropper's elongation with the coordinates, at rest."""
@@ -226,8 +235,8 @@ class System:
         return (rows.T @ diags(self.droppers.damping) @ rows).tocsr()
 
     def spring_stiffness(self) -> Any:
-        """Stiffness of droppers (taut), arms and supports at rest, over all coordinates, sparse."""
-        return scattered(self._spring_parts(self.reference, True), self.place.size)
+        """Stiffness of all but the wires at rest, droppers taut, over all coordinates, sparse."""
+        return scattered(self._spring_parts(self.reference, True), self.place.size) + self.linear_stiffness
 
     def between(self, x: Floats, begin: float, end: float) -> System:
         """The same coordinates with the elements, droppers and arms of a part of the line alone.
@@ -251,6 +260,7 @@ class System:
             droppers=self.droppers.only(none[self.droppers.first]),
             arms=self.arms.only(none[self.arms.first]),
             ground_stiffness=np.zeros(x.size),
+            linear_stiffness=0 * self.linear_stiffness,
         )
 
     @property
@@ -277,7 +287,8 @@ class System:
         total = self.reference + moved
         stored = strain_energy(self.cables, total[self.elements()].reshape(-1, 4, self.axes)).sum()
         stored += self.droppers.energy(total) + self.arms.energy(total)
-        return float(stored + (self.ground_stiffness * moved**2).sum() / 2 - self.force @ moved)
+        stored += (self.ground_stiffness * moved**2).sum() / 2 + moved @ (self.linear_stiffness @ moved) / 2
+        return float(stored - self.force @ moved)
 
     def elements(self) -> Integers:
         """Shape (elements, 4 * axes): coordinates of each cable element."""
@@ -286,7 +297,7 @@ class System:
 
 def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> System:
     """The line as it was installed, as one system."""
-    from scipy.sparse import diags
+    from scipy.sparse import csr_matrix, diags
 
     lines, axes = installation.lines, installation.axes
     width, first_nodes = 2 * axes, mesh.first_nodes
@@ -323,15 +334,28 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
         arms=held.bars(),
         ground_stiffness=held.stiffness,
         ground_damping=held.damping,
+        linear_stiffness=csr_matrix((size, size)),
+        linear_damping=csr_matrix((size, size)),
         force=force + held.force + installation.balance,
         alpha=float(catenary.damping.alpha),
         beta=float(catenary.damping.beta),
-        wires=tuple(
-            WireNodes(mesh.wire_name(n), int(first), wire.x, n < mesh.contact_wires, wire.supports)
-            for n, (first, wire) in enumerate(zip(first_nodes, mesh.wires, strict=False))
-        ),
+        wires=_wires(catenary, mesh),
         contact_wire_height=catenary.contact_wire_height,
     )
+
+
+def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
+    found = []
+    pulls = element_pulls(catenary, mesh)
+    for n, (first, wire, pull) in enumerate(zip(mesh.first_nodes, mesh.wires, pulls, strict=False)):
+        clamps = [mesh.lower.node[mesh.lower.on(n)], mesh.upper.node[mesh.upper.on(n)]]
+        clamps += [wire.supports, np.array([0, wire.x.size - 1])]
+        if n == mesh.contact_wires:
+            clamps.append(mesh.stitch_ends.ravel())
+        fixed = np.unique(np.concatenate(clamps))
+        contact = n < mesh.contact_wires
+        found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))
+    return tuple(found)
 
 
 def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:

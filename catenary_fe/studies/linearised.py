@@ -33,7 +33,7 @@ class LinearisedLine:
         self, shape: Shape, time: TimeSettings | None = None, store_wire: float | None = None
     ) -> None:
         self.shape, self.time = shape, time or TimeSettings()
-        model = linear_model(shape.system, shape.catenary, shape.mesh)
+        model = linear_model(shape.system)
         self.engine = LinearisedEngine(shape.system, model, self.time, store_wire)
 
     def run(self, cases: Sequence[RunCase], progress: Progress | None = None) -> list[Run | CatenaryError]:

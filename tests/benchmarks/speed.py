@@ -66,7 +66,7 @@ def plain_scipy(shape: cf.Shape, seconds: float) -> float:
     from scipy.interpolate import CubicHermiteSpline
     from scipy.sparse.linalg import splu
 
-    model = linear_model(shape.system, shape.catenary, shape.mesh)
+    model = linear_model(shape.system)
     head = cf.library.pantograph("EN 50318:2002")
     M, D, K = (A.tocsc() for A in (model.mass, model.damping, model.stiffness))
     solve = splu(M + STEP / 2 * D + STEP**2 / 4 * K, permc_spec="NATURAL", diag_pivot_thresh=0.0).solve

@@ -212,7 +212,7 @@ def test_a_link_pulls_along_itself(y, z):
     ("spring", "damper"), [(50.0, 20.0), (50.0, -20.0), (50.0, 80.0), (50.0, -80.0), (-50.0, 20.0)]
 )
 def test_a_dropper_that_is_not_taut_lacks_stiffness(spring, damper):
-    scheme = Scheme(1e-3, 0.3, 500.0, *[0.0] * 6)
+    scheme = Scheme(1e-3, 0.3, 500.0, *[0.0] * 7)
     k, d, e = 1e5, 20.0, 1e-6
     rise = plain(one_way)(spring + k * scheme.b * e, damper + d * scheme.g * e) - plain(one_way)(
         spring, damper

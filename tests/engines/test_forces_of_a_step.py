@@ -38,13 +38,14 @@ class State(NamedTuple):
 class Step(NamedTuple):
     """A step that was taken: what was known before it, where it led, and its forces.
 
-    before, after : q*, v* and c, of wires and heads, and of the heads for the next step
+    before : q*, v* and c of wires and heads
+    last : q*, v*, c and x of the heads at the end of the step before
     """
 
     before: tuple
     wires: State
     heads: State
-    after: tuple
+    last: tuple
     tension: np.ndarray
     force: np.ndarray
     slack: np.ndarray
@@ -87,37 +88,45 @@ def law(spring, damper):
     return np.where(spring > 0, spring + np.clip(damper, -spring, spring), 0.0)
 
 
+def step_back(scheme, q, v, c, x):
+    """In place, from what is to be predicted for a step's end to a state that it is predicted from."""
+    x[:] = 0.0
+    c /= scheme.cc
+    v -= scheme.vc * c
+    q -= scheme.h * v + scheme.qc * c
+
+
 def disturb(rng, setup, start, slots, slackening):
     """From the start, droppers, links and heads by as much as makes them leave their tangents."""
     line, rows, heads = setup.line, setup.model.dropper_rows.T, slots.pantographs
-    q, v, c, _, w = (array[:, 0] for array in slots.wires)
+    q, v, c, x, _ = (array[:, 0] for array in slots.wires)
     size = rows.shape[1]
     q[:] = start.q + slackening * rows @ (rng.uniform(-1, 0.5, size) * 1e-3)
     q[line.links.at] += rng.uniform(-1, 1, line.links.at.shape) * [5e-4, 0.03]
     shortening = rng.uniform(-1, 1, size) * line.tension / line.d
     v[:] = rng.normal(0, 0.05, v.size) + slackening * rows @ shortening
     c[:] = rng.normal(0, 1.0, c.size)
-    w[:] = q + setup.beta * v
+    step_back(setup.scheme, q, v, c, x)
     for p, placed in enumerate(start.pantographs):
         size = placed.body.size
         part = 0, p, slice(size)
         heads.q[part] = placed.heights + rng.uniform(-2e-3, 2e-3, size)
         heads.v[part], heads.c[part] = rng.uniform(-2, 2, (2, size))
+        step_back(setup.scheme, *(array[part] for array in heads[:4]))
 
 
 def take(setup, slots):
     """One step."""
     wires, heads, work, b, g = slots.wires, slots.pantographs, slots.work, setup.scheme.b, setup.scheme.g
-    before = [[array[:, 0].copy() for array in wires[:3]], [array[0].copy() for array in heads[:3]]]
-    tension = work.tension[0].copy()
+    tension, last = work.tension[0].copy(), [array[0].copy() for array in heads[:4]]
     slots.advance(1)
+    before = [[array[:, 0].copy() for array in wires[:3]], [array[0].copy() for array in heads[:3]]]
     ends = [
         State(q + b * x, v + g * x, x.copy())
         for (q, v, _), x in zip(before, (wires.x[:, 0], heads.x[0]), strict=True)
     ]
-    after = [array[0].copy() for array in heads[:3]]
     return Step(
-        before, *ends, after, tension, work.force[0].copy(), work.slack[0].copy(), work.arm_force[0].copy()
+        before, *ends, last, tension, work.force[0].copy(), work.slack[0].copy(), work.arm_force[0].copy()
     )
 
 
@@ -222,8 +231,8 @@ def test_heads_move_as_forces_have_it(history):
             q, v, x = (array[part] for array in step.heads)
             forces = body.mass @ x + body.damping @ v + body.stiffness @ q + pushed[part]
             assert forces == pytest.approx(placed.uplift * body.load, abs=1e-6)
-        predicted = plain(advance)(history.setup.scheme, *step.before[1], step.heads.x)
-        for mine, other in zip(step.after, predicted, strict=True):
+        predicted = plain(advance)(history.setup.scheme, *step.last)
+        for mine, other in zip(step.before[1], predicted, strict=True):
             assert mine == pytest.approx(other, abs=1e-12)
 
 

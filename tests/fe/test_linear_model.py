@@ -12,7 +12,7 @@ from catenary_fe.fe.system import assemble
 
 @pytest.fixture(scope="module")
 def reduced(short_shape):
-    return linear_model(short_shape.system, short_shape.catenary, short_shape.mesh)
+    return linear_model(short_shape.system)
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def damped(shape, kind, alpha=0.0, beta=0.0, **changes):
     line = shape.catenary.replace(damping=cf.RayleighDamping(alpha=alpha, beta=beta), **changes)
     system = assemble(line, shape.mesh, shape.installation)
     if kind == "linear":
-        return linear_model(system, line, shape.mesh).damping
+        return linear_model(system).damping
     return system.free(system.damping() + system.taut_damping())
 
 
@@ -96,7 +96,7 @@ def test_rayleigh_damping_of_wires_and_droppers(short_shape):
     spans = tuple(s.replace(droppers=tuple(d.replace(damping=own) for d in s.droppers)) for s in line.spans)
     changed = line.replace(spans=spans, damping=cf.RayleighDamping(beta=beta))
     system = assemble(changed, short_shape.mesh, short_shape.installation)
-    model = linear_model(system, changed, short_shape.mesh)
+    model = linear_model(system)
     for found in (model.dropper_damping, system.droppers.damping):
         assert found == pytest.approx(np.full(len(line.droppers), own + beta * k))
     rows, places = model.dropper_rows, model.heights[model.heights >= 0]
@@ -130,7 +130,7 @@ def test_mass_damping_is_of_the_wires_alone(short_shape, kind):
     assert abs(before - after).max() <= 1e-9 * abs(before).max()
     wires = (line.contact_wire.mass_per_length + line.messenger_wire.mass_per_length) * line.length
     if kind == "linear":
-        model = linear_model(short_shape.system, line, short_shape.mesh)
+        model = linear_model(short_shape.system)
         up = np.zeros(model.size)
         up[model.heights[model.heights >= 0]] = 1.0
         assert up @ before @ up == pytest.approx(0.1 * wires, rel=0.02)  # without the ends, which are held

@@ -173,7 +173,7 @@ def computed(line: cf.Catenary) -> Iterator[Any]:
     shape = cf.find_form(line)
     yield shape.dropper_schedule()
     yield [wire.z.round(9).tolist() for wire in shape.wires]
-    model = linear_model(shape.system, line, shape.mesh)
+    model = linear_model(shape.system)
     weights = np.cos(np.arange(model.size))
     for matrix in (model.mass, model.damping, model.stiffness):
         yield float(weights @ (matrix @ weights))

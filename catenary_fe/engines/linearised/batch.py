@@ -133,12 +133,12 @@ def _finish(
     work: Work,
     records: Records,
 ) -> None:
-    """Forces and records of all slots, and the next step's prediction of the masses."""
+    """Forces and records of all slots."""
     for c in range(pantographs.step.size):
         if pantographs.step[c] < heads.last[c]:
+            advance_heads(scheme, pantographs, c)
             solve_contacts(scheme, line, wires, heads, pantographs, work, records, c)
             record(scheme, line, wires, heads, pantographs, work, records, c)
-            advance_heads(scheme, pantographs, c)
             pantographs.step[c] += 1
 
 
@@ -160,6 +160,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
     ) -> int:
         groups = flat.x.size // 4
         for _ in range(steps):
+            predict(scheme, operator.beta, flat)
             flat.x[:] = line.load
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
@@ -167,7 +168,6 @@ def _loops(sources: str) -> tuple[Any, Any]:
             lower_one(operator.lower, flat.x, 0, groups)
             upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
             _finish(scheme, line, wires, heads, pantographs, work, records)
-            predict(scheme, operator.beta, flat)
         return len(sources)
 
     @kept
@@ -184,6 +184,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
         steps: int,
     ) -> int:
         for _ in range(steps):
+            predict(scheme, operator.beta, flat)
             for i in range(line.load.size):
                 wires.x[i, :] = line.load[i]
             take_eight(operator.stiffness, wires.w, wires.x)
@@ -192,7 +193,6 @@ def _loops(sources: str) -> tuple[Any, Any]:
             lower_eight(operator.lower, wires.x)
             upper_eight(operator.upper, operator.inverse, wires.x)
             _finish(scheme, line, wires, heads, pantographs, work, records)
-            predict(scheme, operator.beta, flat)
         return len(sources)
 
     return one, eight

@@ -168,7 +168,7 @@ def solve_contacts(
     for j in range(heads.owner.shape[1]):
         work.force[c, j] = 0.0
         if heads.owner[c, j] >= 0:
-            position = heads.start[c, j] + heads.speed[c] * scheme.h * (pantographs.step[c] + 1)
+            position = heads.start[c, j] + heads.speed[c, j] * scheme.h * (pantographs.step[c] + 1)
             place_contact(line, heads, work, c, j, position)
             contacts += 1
     for a in range(work.active_count[c]):

@@ -96,6 +96,7 @@ def _filled_up(model: LinearModel) -> LinearModel:
         mass=mass,
         stiffness=stiffness,
         damping=block_diag([model.damping, csr_matrix((more, more))]).tocsr(),
+        imbalance=np.append(model.imbalance, np.zeros(more)),
         dropper_rows=hstack([model.dropper_rows, csr_matrix((model.dropper_rows.shape[0], more))]).tocsr(),
     )
 

@@ -28,8 +28,8 @@ class Equations(NamedTuple):
     """Equations of motion, see :class:`~catenary_fe.fe.system.System`.
 
     reference, place : shape (all,)
-    ground, force : shape (free,)
-    mass, damping : over the free coordinates
+    force : shape (free,)
+    stiffness, mass, damping : over the free coordinates, the stiffness of linear springs
     """
 
     reference: Floats
@@ -37,8 +37,8 @@ class Equations(NamedTuple):
     elements: Elements
     droppers: SpringArrays
     links: SpringArrays
-    ground: Floats
     force: Floats
+    stiffness: PackedRows
     mass: PackedRows
     damping: PackedRows
 

@@ -42,7 +42,7 @@ class Parameters:
             ),
             droppers=_arrays(line.droppers),
             links=_arrays(line.arms),
-            ground=np.concatenate([line.gather(line.ground_stiffness), idle]),
+            stiffness=packed_rows(_padded(line.free(self._linear_stiffness), more, 0.0)),
             force=np.concatenate([line.gather(line.force), idle]),
             mass=packed_rows(_padded(self.mass, more, 1.0)),
             damping=packed_rows(_padded(line.free(self._damping), more, 0.0)),
@@ -52,6 +52,12 @@ class Parameters:
     def mass(self) -> Any:
         """[kg] over the free coordinates, sparse."""
         return self.system.free(self.system.mass)
+
+    @property
+    def _linear_stiffness(self) -> Any:
+        from scipy.sparse import diags
+
+        return diags(self.system.ground_stiffness) + self.system.linear_stiffness
 
     @cached_property
     def _damping(self) -> Any:

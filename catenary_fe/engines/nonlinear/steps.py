@@ -58,7 +58,7 @@ def _place(
         p = heads.owner[0, j]
         if p < 0:
             continue
-        position = heads.start[0, j] + heads.speed[0] * time
+        position = heads.start[0, j] + heads.speed[0, j] * time
         e, _ = weigh_contact(stations, heads, work, 0, j, position)
         place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
         first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
@@ -276,10 +276,11 @@ def _loop(sources: str) -> Any:
                 )
                 take_links(system.links, motion.total, motion.inner)
                 for i in range(residual.size):
-                    residual[i] = system.force[i] - system.ground[i] * motion.q[i]
+                    residual[i] = system.force[i]
                 for i in range(system.place.size):
                     if system.place[i] >= 0:
                         residual[system.place[i]] += motion.inner[i]
+                take_one(system.stiffness, motion.q, residual)
                 take_one(system.mass, flat.x, residual)
                 take_one(system.damping, motion.v, residual)
                 _contacts(heads, work, residual)
