@@ -7,6 +7,7 @@ from pathlib import Path
 import exudyn as exu
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
@@ -157,6 +158,27 @@ def test_a_dropper_that_is_stiffer_by_a_thousandth_is_seen(system, moved, exudyn
     assert np.abs(other.out_of_balance(moved) - theirs.forces).max() > 1e-3
     with pytest.raises(AssertionError):
         assert_equal_to_rounding(other, theirs, moved)
+
+
+def test_further_linear_stiffness_and_damping_reach_exudyn(shape, system, moved):
+    """A spring and damper between contact and messenger wire in the middle of the line."""
+    wire, messenger = system.wires[0], next(w for w in system.wires if not w.contact)
+    middle = wire.x[-1] / 2
+    nodes = [w.first + int(np.abs(w.x - middle).argmin()) for w in (wire, messenger)]
+    row = np.zeros((1, system.place.size))
+    row[0, 2 * system.axes * np.array(nodes) + system.axes - 1] = 1.0, -1.0
+    between = csr_matrix(row.T @ row)
+    other = replace(system, linear_stiffness=5e4 * between, linear_damping=300.0 * between)
+    changed = replace(shape)
+    vars(changed)["system"] = other
+    model = cf.exudyn_model(changed)
+    at_rest, theirs = (assembled_by_exudyn(model.mbs, q) for q in (0 * moved, moved))
+    model.release()
+    assert_equal_to_rounding(other, theirs, moved)
+    with pytest.raises(AssertionError):
+        assert_equal_to_rounding(system, theirs, moved)
+    damping = other.damping() + other.taut_damping()
+    assert abs(damping - at_rest.damping).max() < 2e-8 * np.abs(at_rest.damping).max()
 
 
 def test_exudyn_finds_the_same_equilibrium(shape):

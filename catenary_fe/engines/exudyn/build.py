@@ -40,7 +40,7 @@ class ExudynModel:
     supports : objects, springs from the wires to the ground, by the names of their coordinates
     holds : objects, constraints of what cannot move, likewise
     clamps : objects, constraints of the ends of stitch wires to the messenger wire
-    loads : object with all constant forces on the wires, point masses and Rayleigh damping
+    loads : object with all constant forces on the wires, point masses, Rayleigh damping, what else is linear
     ground : coordinate marker that never moves
     pantographs : bodies, strips and contacts of each pantograph, the attached ones last
     """
@@ -289,7 +289,7 @@ def _add_clamps(mbs: exu.MainSystem, nodes: list[int], system: System) -> dict[s
 
 
 def _add_loads(mbs: exu.MainSystem, nodes: list[int], system: System) -> int:
-    """Constant forces, point masses and Rayleigh damping of the wires as one object.
+    """Constant forces, point masses, Rayleigh damping of the wires and what else is linear as one object.
 
     The damping includes the tension's stiffness, on which a wire's waves live; a cable element's own damping
     knows only of EA and EI. One vector of forces costs a third of a load on each element.
@@ -299,6 +299,7 @@ def _add_loads(mbs: exu.MainSystem, nodes: list[int], system: System) -> int:
     matrices: dict[str, Any] = {}
     for name, matrix in (
         ("massMatrix", system.mass - system.wire_mass),
+        ("stiffnessMatrix", system.linear_stiffness),
         ("dampingMatrix", system.damping() - diags(system.ground_damping)),
     ):
         sparse = csr_matrix(matrix)
