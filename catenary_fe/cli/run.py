@@ -107,7 +107,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 @click.option(
     "--energy",
     is_flag=True,
-    help="Record energy and check its balance with the method exudyn, too: a quarter slower.",
+    help="Record energy and check its balance with the method exudyn, too: a tenth slower.",
 )
 @click.option(
     "--elasticity",

@@ -88,7 +88,7 @@ def simulate(
         compare with; "linearised" about the static state, many times faster: slack droppers and contact are
         solved in each step, large motions are not there. It warns where they matter.
     energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
-        judges, a quarter slower; runs with the method "nonlinear" always do
+        judges, a tenth slower; runs with the method "nonlinear" always do
     checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
         again, the same run goes on from it, with the same result. It is removed at the end
     model : with the method "exudyn", the multibody model of this shape and these pantographs to run

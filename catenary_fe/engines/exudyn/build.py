@@ -100,8 +100,8 @@ class ExudynModel:
     ) -> PantographParts:
         """Attach bodies of one's own, as one pantograph, to contacts that runs move along the contact wires.
 
-        The bodies stay where they are along the track: contact acts upwards alone. At the start of a run the
-        strips should be a little above the wire, for the static solve to find them in contact.
+        Contact acts upwards alone, so the bodies may stay where they are along the track. At the start of a
+        run the strips should be a little above the wire, for the static solve to find them in contact.
 
         name : what tables and pictures call it
         strips : position markers on the collector strips
@@ -114,7 +114,7 @@ class ExudynModel:
         """
         number("contact_stiffness", contact_stiffness, "N/m", above=0.0)
         number("contact_damping", contact_damping, "N s/m", least=0.0)
-        ahead = ahead or [0.0] * len(strips)
+        strips, ahead, masses = list(strips), list(ahead) or [0.0] * len(strips), list(masses)
         if not strips or len(ahead) != len(strips):
             raise InputError(
                 f"{name}: {len(strips)} strips and {len(ahead)} distances ahead; name at least one strip, and"
