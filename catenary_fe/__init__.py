@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from catenary_fe.engines.exudyn import ExudynModel, exudyn_model
-    from catenary_fe.engines.exudyn.wire_run import run_wire
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
     from catenary_fe.fe.wire_problem import (
@@ -54,6 +53,7 @@ if TYPE_CHECKING:
     from catenary_fe.statics import Shape, find_form, find_heights
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import modal_run, simulate, solve_modes
+    from catenary_fe.studies.single_wire import run_wire
 
 # loaded on first use: importing the package stays quick
 _ROOMS = {
@@ -61,7 +61,7 @@ _ROOMS = {
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
     "engines.exudyn": ("ExudynModel", "exudyn_model"),
-    "engines.exudyn.wire_run": ("run_wire",),
+    "studies.single_wire": ("run_wire",),
     "statics": ("Shape", "find_form", "find_heights"),
     "statics.elasticity": ("StaticState", "elasticity", "solve_statics"),
     "fe": ("MeshSettings",),

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe import theory
-from catenary_fe.engines.exudyn.wire_run import run_wire
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem
 from catenary_fe.layout import Wire
+from catenary_fe.studies.single_wire import run_wire
 
 Floats = NDArray[np.float64]
 

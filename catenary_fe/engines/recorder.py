@@ -62,6 +62,16 @@ class InitialState:
     wires: int
 
     @property
+    def contact_forces(self) -> Floats:
+        """[N], shape (contacts,)."""
+        return np.concatenate([np.zeros(0), *(placed.forces for placed in self.pantographs)])
+
+    @property
+    def wire_heights(self) -> Floats:
+        """[m], shape (contacts,), above the nominal contact wire height."""
+        return np.concatenate([np.zeros(0), *(placed.wire_heights for placed in self.pantographs)])
+
+    @property
     def contacts(self) -> list[Contact]:
         """Each strip on each contact wire."""
         return contacts_of(self.pantographs, self.wires)
@@ -159,8 +169,8 @@ def load_pantographs(
         if law.points:
             heads.law[slot, j, : len(law.points)] = law.points
     count = len(start.contacts)
-    records.force[slot, :count, 0] = np.concatenate([p.forces for p in start.pantographs])
-    records.height[slot, :count, 0] = np.concatenate([p.wire_heights for p in start.pantographs])
+    records.force[slot, :count, 0] = start.contact_forces
+    records.height[slot, :count, 0] = start.wire_heights
     heads.speed[slot, :], state.step[slot], heads.last[slot] = start.speed, 0, steps
     records.droppers[slot, :, 0] = start.dropper_force
     for found in (records.change, records.changed, records.shortening, records.shortened):

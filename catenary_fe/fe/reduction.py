@@ -90,6 +90,7 @@ class LinearModel:
     stretch : elements whose inclination lengthens a gap
     gaps : where these tensions are
     imbalance : [N], shape (size,), what the line is out of balance where it was installed
+    vertical : numbers of all heights and vertical slopes: among all coordinates of the line, and among these
     spatial : whether it has coordinates across the track
     """
 
@@ -107,6 +108,7 @@ class LinearModel:
     links: SteadyArmBars
     stretch: StretchCoupling
     imbalance: Floats
+    vertical: tuple[Integers, Integers]
     spatial: bool
 
     @property
@@ -135,6 +137,7 @@ def linear_model(system: System) -> LinearModel:
     M = M + _padded(system.mass - system.wire_mass, gaps)
     T, place = _kept(system, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
+    vertical = np.concatenate([system.heights, system.heights + system.axes])
     return LinearModel(
         mass=M,
         stiffness=K,
@@ -150,6 +153,7 @@ def linear_model(system: System) -> LinearModel:
         links=_swinging_links(system, place),
         stretch=_stretch_coupling(system, wires, place),
         imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
+        vertical=(vertical, place[vertical]),
         spatial=system.spatial,
     )
 

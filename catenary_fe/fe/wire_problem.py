@@ -156,6 +156,40 @@ class WireMotion:
         return shape
 
 
+@dataclass(frozen=True, kw_only=True)
+class WirePair:
+    """Wires without moving loads, and the dropper between them.
+
+    lower, upper : the wires; both have a node at the dropper
+    height : [m] of the upper wire above the lower one
+    position : [m] of the dropper along the track
+    stiffness : [N/m] of the dropper in tension
+    preload : [N] tension at rest, balanced by constant forces on the wires as by a weight and its support
+    damping : [N s/m] of the dropper while it is taut
+    """
+
+    lower: WireProblem
+    upper: WireProblem
+    height: float
+    position: float
+    stiffness: float
+    preload: float
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class PairMotion:
+    """Motion of both wires, complete.
+
+    lower, upper : the wires' motions
+    dropper_force : [N] shape (times,), tension
+    """
+
+    lower: WireMotion
+    upper: WireMotion
+    dropper_force: Floats
+
+
 def even_nodes(fixed: Sequence[float] | Floats, element: float) -> Floats:
     """Positions [m] of nodes on all the fixed points and evenly between them.
 

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from catenary_fe.engines.exudyn.wire_build import wire_at_rest
-from catenary_fe.engines.exudyn.wire_run import run_wire
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.wire_problem import SlidingPantograph, WireProblem, even_nodes, graded_nodes
 from catenary_fe.layout import InputError, Pantograph, SolverError, Stage, Wire
+from catenary_fe.studies.single_wire import run_wire, wire_at_rest
 from catenary_fe.theory import ElasticPantograph, MovingForce, linear_law
 
 WIRE = Wire(mass_per_length=1.33, tension=20e3, axial_stiffness=1.7e7)

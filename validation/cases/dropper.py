@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from catenary_fe.engines.exudyn.wire_pair import PairMotion, WirePair, run_pair
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.fe.wire_problem import WireProblem, graded_nodes
+from catenary_fe.fe.wire_problem import PairMotion, WirePair, WireProblem, graded_nodes
 from catenary_fe.layout import Wire
+from catenary_fe.studies.single_wire import run_pair
 from validation.case import Case
 from validation.check import Check, compare_curves
 from validation.paper_wire import MASS, TENSION, C, Floats, wire

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from catenary_fe import theory
-from catenary_fe.engines.exudyn.wire_build import vertical_matrices
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
+from catenary_fe.studies.single_wire import vertical_matrices
 from validation.case import Case
 from validation.check import Check, compare
 from validation.paper_wire import TENSION, Floats, wire

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from catenary_fe.engines.exudyn.wire_build import wire_at_rest
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from catenary_fe.layout import GRAVITY
+from catenary_fe.studies.single_wire import wire_at_rest
 from validation.case import Case
 from validation.check import Check, compare
 from validation.paper_wire import MASS, TENSION, Floats, wire

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from catenary_fe import theory
-from catenary_fe.engines.exudyn.wire_build import wire_at_rest
 from catenary_fe.fe.wire_problem import WireProblem, graded_nodes
+from catenary_fe.studies.single_wire import wire_at_rest
 from validation.case import Case
 from validation.check import Check, compare, compare_curves
 from validation.paper_wire import FORCE, TENSION, Floats, wire

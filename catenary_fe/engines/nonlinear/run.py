@@ -12,7 +12,7 @@ from catenary_fe.engines.arrays import Records, Wires
 from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
 from catenary_fe.engines.faults import place_of_heads, smaller_steps
-from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
+from catenary_fe.engines.generalized_alpha import Scheme, at_start, make_scheme
 from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.nonlinear.arrays import Factor
 from catenary_fe.engines.nonlinear.recorder import EnergyRecord, RunRecorder
@@ -128,6 +128,27 @@ class NonlinearRun:
         if every:
             records.wire[0, 0] = total[stations.heights] - stations.rest
         return records
+
+    def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
+        """Begin with velocities and accelerations instead of at rest.
+
+        v, x : [m/s], [m/s²], shape (free,)
+        heads : [m/s²], shape (pantographs, coordinates)
+        """
+        scheme, wires, own = self._engine._scheme, self.state.wires, self.state.pantographs
+        size = v.size
+        parts = at_start(scheme, wires.q[:size, 0].copy(), v, x)
+        for array, values in zip(wires[:4], parts, strict=True):
+            array[:size, 0] = values
+        parts = at_start(scheme, own.q[0].copy(), np.zeros_like(own.q[0]), heads)
+        for array, values in zip(own[:4], parts, strict=True):
+            array[0] = values
+
+    def motion(self) -> tuple[Floats, Floats]:
+        """Displacements and velocities now, shape (free,) each."""
+        scheme, wires, size = self._engine._scheme, self.state.wires, self._parameters.system.size
+        q, v = wires.q + scheme.b * wires.x, wires.v + scheme.g * wires.x
+        return q[:size, 0], v[:size, 0]
 
     def take_up(self, checkpoint: Checkpoint | None) -> None:
         """Go on from what a checkpoint kept, if it kept anything."""

@@ -49,7 +49,7 @@ class State:
             np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), total.copy(), np.zeros(total.size)
         )
         work = _work(sizes)
-        work.force[0] = np.concatenate([placed.forces for placed in start.pantographs])
+        work.force[0] = start.contact_forces
         return cls(
             wires,
             motion,
