@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from catenary_fe.engines.exudyn.contacts import ContactParts, Contacts, WireParts
+from catenary_fe.engines.exudyn.contact import ContactParts, Contacts, WireParts
 from catenary_fe.fe.contact import ContactPath
 
 exu = pytest.importorskip("exudyn")

@@ -57,7 +57,7 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.statics.form_finding": _STATICS,
     "catenary_fe.statics.cut_wires": _STATICS,
     "catenary_fe.statics.rules": _STATICS,
-    "catenary_fe.engines.exudyn.contacts": [
+    "catenary_fe.engines.exudyn.contact": [
         "tests/engines/test_exudyn_contacts.py",
         _CONTACT,
         "tests/engines/test_elastic_pantograph.py",

@@ -11,7 +11,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.exudyn.contacts import (
+from catenary_fe.engines.exudyn.contact import (
     Contacts,
     PantographParts,
     WireParts,

@@ -123,8 +123,7 @@ def _integrate(
 
     Raises SolverError where the smallest ones fail, too.
     """
-    contacts = model.contacts
-    what, parts, steps = f"run at {3.6 * case.speed:g} km/h", 1, case.steps(time.step)
+    contacts, parts, steps = model.contacts, 1, case.steps(time.step)
     while recorder.done < steps:
         first = max(recorder.done, 0)
         last = steps if parts == 1 else min(first + STRETCH, steps)
@@ -138,22 +137,14 @@ def _integrate(
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
 
-        try:
-            solve_dynamic(
-                model.mbs,
-                steps=(last - first) * parts,
-                time=finer,
-                what=what,
-                before_step=before_step,
-                begin=first * time.step,
-            )
+        if solve_dynamic(model.mbs, (last - first) * parts, finer, before_step, first * time.step):
             recorder.record(last)
             parts = 1
-        except SolverError:
-            if parts == MOST_PARTS:
-                raise SolverError(recorder.failure(what)) from None
+        elif parts < MOST_PARTS:
             parts *= 2
             recorder.note_smaller_steps(parts)
+        else:
+            raise SolverError(recorder.failure())
         if recorder.done < steps:
             _set_state(model, *recorder.state)
             contacts.move_to(case.start + case.speed * time.step * recorder.done, case.speed)
@@ -227,15 +218,15 @@ class _Recorder:
         _log.warning("no convergence after t = %.4f s: on in steps of 1/%d", at, parts)
         self._notes[at] = parts
 
-    def failure(self, what: str) -> str:
+    def failure(self) -> str:
         """A failed run in words: when, where, what is strained, what to do."""
         n, catenary = self.done, self._model.shape.catenary
         positions = self._positions(n)
         forces = ", ".join(f"{f:.0f} N" for f in self._force[:, n])
         strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
         return (
-            f"{what}: no convergence after t = {self._step * n:.4f} s with steps of {self._step:g} s"
-            f" and of 1/{MOST_PARTS} of it; {place_of_heads(catenary.support_positions, positions)}, contact"
+            f"run at {3.6 * self._case.speed:g} km/h: no convergence after t = {self._step * n:.4f} s with"
+            f" steps of {self._step:g} s and of 1/{MOST_PARTS} of it; {place_of_heads(catenary.support_positions, positions)}, contact"
             f" force {forces};"
             f" {strained + '; ' if strained else ''}look at the stiffness and uplift_force there, and try a"
             " smaller time step"

@@ -87,34 +87,30 @@ def _settled(mbs: exu.MainSystem, load_steps: int = 1) -> bool:
 
 def solve_dynamic(
     mbs: exu.MainSystem,
-    *,
     steps: int,
     time: TimeSettings,
-    what: str,
-    before_step: Callable[[float], None] | None = None,
+    before_step: Callable[[float], None],
     begin: float = 0.0,
-) -> None:
-    """Integrate from the initial state over a number of fixed steps.
+) -> bool:
+    """Integrate from the initial state over a number of fixed steps; false if one does not converge.
 
-    begin : [s]
     before_step : called with the time of each step's end before the step
+    begin : [s]
 
-    Raises SolverError with the time reached if a step does not converge, and what ``before_step`` raises.
+    Raises what ``before_step`` raises.
     """
     raised: list[BaseException] = []
     computing = _Computing()
 
     def called(_: exu.MainSystem, end: float) -> bool:
         try:
-            assert before_step is not None
             computing.deliver()
             before_step(end)
         except BaseException as error:  # Exudyn would make an error of its own of it, of Ctrl-C, too
             raised.append(error)
         return not raised
 
-    if before_step is not None:
-        mbs.SetPreStepUserFunction(called)
+    mbs.SetPreStepUserFunction(called)
     settings = _common_settings()
     integration = settings.timeIntegration
     integration.numberOfSteps = steps
@@ -127,19 +123,17 @@ def solve_dynamic(
     integration.newton.relativeTolerance = time.tolerance
     integration.newton.absoluteTolerance = 1e-8
     integration.generalizedAlpha.spectralRadius = time.spectral_radius
+    converged = True
     try:
         with computing:
             mbs.SolveDynamic(settings)
     except exu.SolverError:
-        reached = mbs.systemData.GetTime()
-        raise SolverError(
-            f"{what}: no convergence at t = {reached:.4f} s with steps of {time.step:g} s; try a smaller time"
-            " step, and look at the contact and dropper stiffnesses"
-        ) from None
+        converged = False
     finally:
         mbs.SetPreStepUserFunction(0)  # none: the static solver would call it, too
     if raised:
         raise raised[0]
+    return converged
 
 
 def _force_floor(mbs: exu.MainSystem) -> float:
