@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -354,3 +355,15 @@ def recorded_pantograph(record: dict[str, Any]) -> AnyPantograph:
     """A pantograph from its record in a result. Raises pydantic's ValidationError for what is none."""
     kind = Pantograph if "stages" in record else ElasticPantograph
     return (AttachedPantograph if "attached" in record else kind).model_validate(record)
+
+
+def check_pantographs(pantographs: object, *, least: int = 1) -> None:
+    """Raises InputError for what is not a list of pantographs, or of too few."""
+    remedy = "give a list of pantographs, such as [library.pantograph('DSA250')]"
+    if isinstance(pantographs, str) or not isinstance(pantographs, Sequence):
+        raise InputError(f"pantographs = {shorten(pantographs)}: {remedy}")
+    if len(pantographs) < least:
+        raise InputError("pantographs is empty; give at least one")
+    for i, pantograph in enumerate(pantographs, start=1):
+        if not isinstance(pantograph, AnyPantograph):
+            raise InputError(f"pantograph {i} = {shorten(pantograph)}: {remedy}")

@@ -19,9 +19,10 @@ from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted, counted
 from catenary_fe.layout.arguments import checked, number, numbers, one_of
+from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
-from catenary_fe.studies.checks import check_heads, check_pantographs, check_speed, run_warnings
+from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
 from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
 from catenary_fe.studies.mean_force import MeanForce
 from catenary_fe.studies.partial import kept_when_stopped
@@ -105,8 +106,7 @@ def simulate(
     if model is not None:
         _check_model(model, shape, pantographs, method, energy=energy)
         runs = model.records
-    if not (model and runs):
-        check_pantographs(pantographs)
+    check_pantographs(runs)
     time = time or TimeSettings()
     _check_options(speed, method, energy, time, store_wire)
     if checkpoint is not None and method != "nonlinear":

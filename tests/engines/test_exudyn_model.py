@@ -225,10 +225,14 @@ def test_a_model_of_another_line_or_pantograph(shape, pushed):
         simulate(cf.find_form(shape.catenary), [pushed], model)
     with pytest.raises(cf.InputError, match="model = 3: must be a multibody model"):
         simulate(shape, [pushed], 3)
+    (strip,) = model.pantographs[0].strips
     with pytest.raises(cf.InputError, match="mine: 1 strips and 2 distances ahead"):
-        model.attach("mine", [0], contact_stiffness=50e3, ahead=[0.0, 0.1])
+        model.attach("mine", [strip], contact_stiffness=50e3, ahead=[0.0, 0.1])
+    for bad in (10**6, -1, 0.5, "x", model.ground):
+        with pytest.raises(cf.InputError, match=r"mine: strips: .* must be the number of a position marker"):
+            model.attach("mine", [bad], contact_stiffness=50e3)
     with pytest.raises(cf.InputError, match="contact_stiffness"):
-        model.attach("mine", [0], contact_stiffness=0.0)
+        model.attach("mine", [strip], contact_stiffness=0.0)
     model.release()
     with pytest.raises(cf.InputError, match="pantographs is empty"):
         empty = cf.exudyn_model(shape)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import Any
 
 import exudyn as exu
@@ -24,6 +25,8 @@ from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System
 from catenary_fe.layout import AnyPantograph, AttachedPantograph, InputError
 from catenary_fe.layout.arguments import checked, number
+from catenary_fe.layout.pantograph import check_pantographs
+from catenary_fe.layout.parameters import shorten
 from catenary_fe.statics import Shape
 
 Floats = NDArray[np.float64]
@@ -110,11 +113,14 @@ class ExudynModel:
         ahead : [m] along the track of each strip before the pantograph's position; unset: 0
         masses : position markers whose heights results record; unset: the strips
 
-        Raises InputError for values out of bounds, and for distances that are not as many as the strips.
+        Raises InputError for values out of bounds, for what are no position markers of ``mbs``, and for
+        distances that are not as many as the strips.
         """
         number("contact_stiffness", contact_stiffness, "N/m", above=0.0)
         number("contact_damping", contact_damping, "N s/m", least=0.0)
-        strips, ahead, masses = list(strips), list(ahead) or [0.0] * len(strips), list(masses)
+        strips = _position_markers(self.mbs, f"{name}: strips", strips)
+        masses = _position_markers(self.mbs, f"{name}: masses", masses) or strips
+        ahead = list(ahead) or [0.0] * len(strips)
         if not strips or len(ahead) != len(strips):
             raise InputError(
                 f"{name}: {len(strips)} strips and {len(ahead)} distances ahead; name at least one strip, and"
@@ -124,7 +130,7 @@ class ExudynModel:
             name=name, contact_stiffness=contact_stiffness, contact_damping=contact_damping
         )
         places = list(zip(strips, ahead, strict=True))
-        parts = add_own_pantograph(self.mbs, self.contact_wires, record, places, masses or strips)
+        parts = add_own_pantograph(self.mbs, self.contact_wires, record, places, masses)
         self.pantographs.append(parts)
         self.mbs.Assemble()
         return parts
@@ -165,6 +171,7 @@ def exudyn_model(shape: Shape, pantographs: Sequence[AnyPantograph] = ()) -> Exu
 
     Raises InputError for what is no shape or no pantograph.
     """
+    check_pantographs(pantographs, least=0)
     system, mbs = shape.system, new_system()
     wires = _add_wires(mbs, system)
     node = mbs.AddNode(eii.NodePointGround())
@@ -186,6 +193,21 @@ def exudyn_model(shape: Shape, pantographs: Sequence[AnyPantograph] = ()) -> Exu
         model.pantographs.append(add_pantograph(mbs, system, model.contact_wires, ground, pantograph))
     mbs.Assemble()
     return model
+
+
+def _position_markers(mbs: exu.MainSystem, what: str, markers: Sequence[int]) -> list[int]:
+    """Their numbers. Raises InputError for what are none."""
+    found = []
+    for marker in markers:
+        number = int(marker) if isinstance(marker, Integral | exu.MarkerIndex) else -1
+        known = 0 <= number < mbs.systemData.NumberOfMarkers()
+        if not (known and mbs.GetMarker(number)["markerType"].endswith(("Position", "Rigid"))):
+            raise InputError(
+                f"{what}: {shorten(marker)}: must be the number of a position marker, as the model's"
+                " mbs.AddMarker returns it"
+            )
+        found.append(number)
+    return found
 
 
 def _add_wires(mbs: exu.MainSystem, system: System) -> tuple[WireParts, ...]:

@@ -224,10 +224,10 @@ class _Recorder:
         positions = self._positions(n)
         forces = ", ".join(f"{f:.0f} N" for f in self._force[:, n])
         strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
+        where = place_of_heads(catenary.support_positions, positions)
         return (
             f"run at {3.6 * self._case.speed:g} km/h: no convergence after t = {self._step * n:.4f} s with"
-            f" steps of {self._step:g} s and of 1/{MOST_PARTS} of it; {place_of_heads(catenary.support_positions, positions)}, contact"
-            f" force {forces};"
+            f" steps of {self._step:g} s and of 1/{MOST_PARTS} of it; {where}, contact force {forces};"
             f" {strained + '; ' if strained else ''}look at the stiffness and uplift_force there, and try a"
             " smaller time step"
         )
