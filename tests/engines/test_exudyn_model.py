@@ -139,6 +139,7 @@ def test_another_law_of_droppers(shape, pushed, plain, tmp_path):
     assert run.data["dropper_force"].values.min() < -5
     assert np.std(forces(run) - forces(plain)) > 1
     assert run.method == "exudyn"
+    assert run.data.attrs["input_sha256"] != plain.data.attrs["input_sha256"]
     (said,) = [w for w in run.warnings if "what the script changed or attached" in w]
     loaded = cf.load_run(run.save(tmp_path / "run.nc"))
     with pytest.raises(cf.InputError, match="to repeat the run, repeat the script"):
