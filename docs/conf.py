@@ -58,6 +58,7 @@ def setup(app: Any) -> None:
     drawings.draw_all(Path(__file__).parent / "pictures" / "drawn")
     app.add_html_math_renderer("mathml", (visit_math, None), (visit_math_block, None))
     app.add_directive("file-keys", key_tables.FileKeys)
+    app.add_directive("key-figures", key_tables.KeyFigures)
     app.add_directive("library-names", key_tables.LibraryNames)
     app.connect("autodoc-process-docstring", interface.list_parameters)
     app.connect("autodoc-process-signature", interface.readable_signature)

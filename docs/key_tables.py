@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from docutils.parsers.rst import Directive
 
 from catenary_fe.layout.files import layout_schema, pantograph_schema
 from catenary_fe.layout.parameters import LARGEST
+from catenary_fe.results.quantities import FORCE, OF_RUN
 
 SCHEMAS = {"layout": layout_schema, "pantograph": pantograph_schema}
 EXAMPLES = Path(__file__).parent / "reference" / "examples"
@@ -282,12 +283,32 @@ def _written(text: str) -> list[nodes.Node]:
     return [nodes.literal("", p) if i % 2 else nodes.Text(p) for i, p in enumerate(parts) if p]
 
 
-def _table(rows: list[list[list[nodes.Node]]]) -> nodes.table:
-    group = nodes.tgroup("", *(nodes.colspec(colwidth=w) for w in _WIDTHS), cols=len(_WIDTHS))
-    head = nodes.row("", *(nodes.entry("", nodes.paragraph("", each)) for each in _HEADS))
+def _table(
+    rows: list[list[list[nodes.Node]]], heads: Sequence[str] = _HEADS, widths: Sequence[int] = _WIDTHS
+) -> nodes.table:
+    group = nodes.tgroup("", *(nodes.colspec(colwidth=w) for w in widths), cols=len(widths))
+    head = nodes.row("", *(nodes.entry("", nodes.paragraph("", each)) for each in heads))
     body = [nodes.row("", *(nodes.entry("", nodes.paragraph("", "", *cell)) for cell in row)) for row in rows]
     group += [nodes.thead("", head), nodes.tbody("", *body)]
     return nodes.table("", group, classes=["keys", "colwidths-given"])
+
+
+def figures_table() -> nodes.table:
+    """The figures that a run is described with: their keys in files, what they are called, their units."""
+    rows = [
+        [[nodes.literal("", q.key)], *([nodes.Text(text or "–")] for text in texts)]
+        for q in (*FORCE.values(), *OF_RUN)
+        for texts in [(q.name, q.symbol, f"{q.unit} {q.share_of}".rstrip(), str(q.digits))]
+    ]
+    return _table(rows, ("Key", "Figure", "Symbol", "Unit", "Decimals in tables"), (34, 30, 10, 14, 12))
+
+
+class KeyFigures(Directive):
+    """The table of figures."""
+
+    def run(self) -> list[nodes.Node]:
+        """Nodes in place of the directive."""
+        return [figures_table()]
 
 
 class LibraryNames(Directive):

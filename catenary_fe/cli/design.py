@@ -1,69 +1,71 @@
-"""Commands that need no run: what a layout is, how it hangs, how it gives."""
+"""Commands that need no run: what a layout is, how it hangs, its elasticity, its modes."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from catenary_fe.cli.folder import output_folder
-from catenary_fe.cli.schedules import print_schedules, write_schedules
-from catenary_fe.cli.terminal import (
-    drawn_spans_option,
-    json_option,
-    layout_argument,
-    output_option,
-    planar_option,
-    print_json,
-    print_table,
-    print_warnings,
-    progress_bar,
-    quiet_option,
-    read_layout,
-    say_lengths,
-    spans_option,
-    warned,
-    working,
-)
+from catenary_fe.cli import options
+from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
 from catenary_fe.layout import Catenary, load_catenary
 from catenary_fe.layout.catenary_rules import check_lengths
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.preflight import layout_warnings
+from catenary_fe.results.export import cell, common_name
+from catenary_fe.results.quantities import decimals_of
 
 if TYPE_CHECKING:
     from catenary_fe.results import Elasticity
+    from catenary_fe.statics import Shape
+
+DRAWN = 6  # shapes of modes in an output folder
+_DROPPERS = (
+    "span", "dropper", "chainage_m", "hangs_on", "contact_wire", "cut_length_mm", "installed_length_m",
+    "force_N", "contact_wire_height_error_mm",
+)  # fmt: skip
+_SUPPORTS = (
+    "support", "chainage_m", "stagger_m", "contact_wire_height_m", "system_height_m", "arm_vertical_N",
+    "arm_lateral_N", "messenger_vertical_N", "messenger_lateral_N",
+)  # fmt: skip
+_SHORT = {
+    "chainage_m": "at m",
+    "contact_wire_height_error_mm": "height error mm",
+    "cut_length_mm": "cut mm",
+    "installed_length_m": "installed m",
+    "contact_wire_height_m": "wire height m",
+    "messenger_vertical_N": "messenger up N",
+    "messenger_lateral_N": "messenger left N",
+    "arm_vertical_N": "arm up N",
+    "arm_lateral_N": "arm left N",
+}
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe info models/layouts/en50318_2002.toml -o info")
-@layout_argument
-@drawn_spans_option
-@output_option
-@json_option
-@quiet_option
-def info(layout: str, spans: list[int] | None, output: str | None, as_json: bool, quiet: bool) -> None:
+@options.layout
+@options.drawn_spans
+@options.answer()
+def info(layout: str, spans: list[int] | None, answer: Answer) -> None:
     """Check a LAYOUT file: wave speeds, masses, a drawing. Nothing is solved."""
     catenary = load_catenary(layout)
     check_lengths(catenary)
-    _check_drawn(catenary, spans, output)
+    _check_drawn(catenary, spans, answer.folder)
     facts = layout_facts(catenary)
-    warnings = layout_warnings(catenary)
-    with output_folder(output) as folder:
+    result = facts | {"warnings": layout_warnings(catenary)}
+    with output_folder(answer.folder) as folder:
         if folder:
             from catenary_fe.views import plot_layout
 
-            folder.json("info.json", facts | {"warnings": warnings})
+            folder.json("info.json", result)
             folder.picture("layout.png", plot_layout(catenary, spans=spans))
-    if as_json:
-        print_json(facts | {"warnings": warnings})
-    else:
-        if not quiet:
-            print_table(catenary.name, ("quantity", "value"), _fact_rows(facts))
-        print_warnings(warnings)
+    answer.show(result, lambda: print_table(catenary.name, ("quantity", "value"), _fact_rows(facts)))
 
 
 def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None) -> None:
-    """Before the work: whether there are these spans to draw, and somewhere to draw them."""
+    """Check before the work starts that the spans to draw exist, and that there is an output folder."""
     if spans is None:
         return
     if output is None:
@@ -75,20 +77,16 @@ def _check_drawn(catenary: Catenary, spans: list[int] | None, output: str | None
 
 def layout_facts(catenary: Catenary) -> dict[str, Any]:
     """Key figures of a layout in display units."""
-    wires = {}
-    for name, wire in (
-        ("contact_wire", catenary.contact_wire),
-        ("messenger_wire", catenary.messenger_wire),
-        ("stitch_wire", catenary.stitch_wire),
-    ):
-        if wire is None:
-            continue
-        wires[name] = {
+    wires = {
+        name: {
             "tension_kN": wire.tension / 1e3,
             "mass_per_length_kg_per_m": wire.mass_per_length,
             "wave_speed_kmh": 3.6 * wire.wave_speed,
             "impedance_Ns_per_m": wire.impedance,
         }
+        for name in ("contact_wire", "messenger_wire", "stitch_wire")
+        if (wire := getattr(catenary, name))
+    }
     lengths = [span.length for span in catenary.spans]
     clamps = sum(d.messenger_clamp_mass + d.contact_wire_clamp_mass for d in catenary.droppers)
     contact_wires = len(catenary.contact_wire_offsets)
@@ -132,40 +130,22 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
-@layout_argument
-@click.option(
-    "--design-lengths",
-    is_flag=True,
-    help="Find the lengths of the design, whatever lengths the layout gives.",
-)
-@drawn_spans_option
-@planar_option
-@output_option
-@json_option
-@quiet_option
-def form(
-    layout: str,
-    design_lengths: bool,
-    spans: list[int] | None,
-    planar: bool,
-    output: str | None,
-    as_json: bool,
-    quiet: bool,
-) -> None:
+@options.layout
+@options.flag("--design-lengths", "Find the lengths of the design, whatever lengths the layout gives.")
+@options.drawn_spans
+@options.planar
+@options.answer()
+def form(layout: str, design_lengths: bool, spans: list[int] | None, planar: bool, answer: Answer) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height.
     """
-    from catenary_fe.statics import find_form
-
-    catenary = read_layout(layout, planar)
+    catenary = options.read_layout(layout, planar)
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
-    _check_drawn(catenary, spans, output)
-    with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        with working("form finding", not quiet):
-            shape = find_form(catenary)
+    _check_drawn(catenary, spans, answer.folder)
+    with static_shape(catenary, answer) as (shape, folder):
         result: dict[str, Any] = {
             "dropper_lengths_given": catenary.gives_dropper_lengths,
             "droppers": [row.as_dict() for row in shape.dropper_schedule()],
@@ -184,41 +164,22 @@ def form(
             folder.picture("static_shape.png", plot_static_shape(shape, spans=spans))
             if catenary.is_spatial:
                 folder.picture("plan.png", plot_plan(shape, spans=spans))
-    if as_json:
-        print_json(result)
-    elif not quiet:
-        print_schedules(shape)
-    say_lengths(shape, quiet)
-    if not as_json:
-        print_warnings(result["warnings"])
+    answer.show(result, lambda: print_schedules(shape), shape)
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")
-@layout_argument
+@options.layout
 @click.option("--force", "force", type=float, default=100.0, show_default=True, help="Upward force in N.")
-@spans_option
-@planar_option
-@output_option
-@json_option
-@quiet_option
-def static(
-    layout: str,
-    force: float,
-    spans: list[int] | None,
-    planar: bool,
-    output: str | None,
-    as_json: bool,
-    quiet: bool,
-) -> None:
+@options.spans
+@options.planar
+@options.answer()
+def static(layout: str, force: float, spans: list[int] | None, planar: bool, answer: Answer) -> None:
     """Elasticity of a LAYOUT: how far a static force lifts the contact wire, point by point."""
-    from catenary_fe.statics import find_form
     from catenary_fe.statics.elasticity import elasticity
 
-    catenary = read_layout(layout, planar)
-    with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        with working("form finding", not quiet):
-            shape = find_form(catenary)
-        with progress_bar("elasticity", not quiet) as progress:
+    catenary = options.read_layout(layout, planar)
+    with static_shape(catenary, answer) as (shape, folder):
+        with progress_bar("elasticity", not answer.quiet) as progress:
             curve = elasticity(shape, force=force, spans=spans, progress=progress)
         rows = [
             {"position_m": float(x), "mm_per_N": 1e3 * float(e)}
@@ -238,19 +199,10 @@ def static(
             folder.table("elasticity.csv", elasticity_table(curve, catenary))
             folder.picture("elasticity.png", plot_elasticity(curve))
             folder.picture("static_shape.png", plot_static_shape(shape))
-    if as_json:
-        print_json(result)
-    elif not quiet:
-        table = [(row["position_m"], f"{row['mm_per_N']:.4f}") for row in rows]
-        print_table(
-            f"{catenary.name}: elasticity under {force:g} N,"
-            f" non-uniformity {100 * curve.non_uniformity:.1f} %",
-            ("position m", "elasticity mm/N"),
-            table,
-        )
-    say_lengths(shape, quiet)
-    if not as_json:
-        print_warnings(result["warnings"])
+    title = f"{catenary.name}: elasticity under {force:g} N"
+    title += f", non-uniformity {100 * curve.non_uniformity:.1f} %"
+    table = [(row["position_m"], f"{row['mm_per_N']:.4f}") for row in rows]
+    answer.show(result, lambda: print_table(title, ("position m", "elasticity mm/N"), table), shape)
 
 
 def elasticity_table(curve: Elasticity, catenary: Catenary) -> list[dict[str, Any]]:
@@ -262,3 +214,78 @@ def elasticity_table(curve: Elasticity, catenary: Catenary) -> list[dict[str, An
         {"span": span, "position_m": x, "uplift_mm": uplift, "elasticity_mm_per_N": value}
         for span, x, uplift, value in zip(spans, *columns, strict=True)
     ]
+
+
+@click.command(epilog="\b\nExample:\n  catenary-fe modes models/layouts/paper_cell.toml --below 20 -o modes")
+@options.layout
+@click.option("--count", type=click.IntRange(1), help="How many modes; unset, and with no --below: 40.")
+@click.option("--below", type=float, metavar="HZ", help="All modes up to this frequency.")
+@options.planar
+@options.answer()
+def modes(layout: str, count: int | None, below: float | None, planar: bool, answer: Answer) -> None:
+    """Eigenfrequencies and shapes of a LAYOUT about its static state, droppers taut."""
+    from catenary_fe.engines.modal.modes import mode_warnings, solve_modes
+    from catenary_fe.fe import MeshSettings
+
+    catenary = options.read_layout(layout, planar)
+    # the usual mesh leaves 0.1 % in the lowest frequencies, half of it 0.02 %
+    with static_shape(catenary, answer, MeshSettings().halved()) as (shape, folder):
+        with working("modes", not answer.quiet):
+            found = solve_modes(shape, count=count, below=below)
+        rows = found.table()
+        result: dict[str, Any] = {
+            "modes": rows,
+            "dropper_lengths_given": catenary.gives_dropper_lengths,
+            "warnings": [*layout_warnings(catenary), *mode_warnings(shape, found)],
+        }
+        if folder:
+            from catenary_fe.views import plot_mode, plot_spectrum
+
+            folder.json("modes.json", result)
+            folder.table("modes.csv", rows)
+            folder.picture("spectrum.png", plot_spectrum(found))
+            for i in range(min(DRAWN, len(found))):
+                folder.picture(f"mode_{i + 1:02d}.png", plot_mode(found, i))
+    table = [
+        (row["mode"], f"{row['frequency_Hz']:.4f}", f"{100 * row['damping_ratio']:.3f}", str(kind))
+        for row, kind in zip(rows, found.kinds(), strict=True)
+    ]
+    columns, title = ("mode", "frequency Hz", "damping %", "kind"), "modes about the static state"
+    answer.show(result, lambda: print_table(f"{catenary.name}: {title}", columns, table), shape)
+
+
+def write_schedules(folder: Folder, shape: Shape) -> None:
+    """Write the tables of droppers and supports as CSV, all columns on every line."""
+    from catenary_fe.statics import DropperRow
+
+    droppers = [row.as_record() for row in shape.dropper_schedule()]
+    folder.table("dropper_schedule.csv", droppers, columns=DropperRow.columns())
+    folder.table("support_schedule.csv", [row.as_dict() for row in shape.support_schedule()])
+
+
+def print_schedules(shape: Shape) -> None:
+    """Print the main columns of both tables."""
+    name, several = shape.catenary.name, len(shape.contact_wires) > 1
+    supports = [key for key in _SUPPORTS if not (several and key == "contact_wire_height_m")]  # no room
+    _print(f"{name}: dropper schedule", [row.as_dict() for row in shape.dropper_schedule()], _DROPPERS)
+    _print(f"{name}: supports", [row.as_dict() for row in shape.support_schedule()], supports)
+
+
+def _print(title: str, rows: Sequence[Mapping[str, Any]], wanted: Sequence[str]) -> None:
+    """The wanted columns, those of each contact wire among them, as far as the line has them."""
+    columns = [
+        key
+        for key in (rows[0] if rows else ())
+        if common_name(key) in wanted and any(row[key] is not None for row in rows)
+    ]
+    columns.sort(key=lambda key: wanted.index(common_name(key)))
+    table = [
+        ["" if row[key] is None else cell(row[key], decimals_of(key)) for key in columns] for row in rows
+    ]
+    print_table(title, [_heading(key) for key in columns], table)
+
+
+def _heading(key: str) -> str:
+    common = common_name(key)
+    number = key[len(common) :] and ("right " if "_1_" in key else "left ")
+    return number + _SHORT.get(common, common.replace("_", " "))

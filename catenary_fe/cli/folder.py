@@ -1,17 +1,23 @@
-"""Output folders: checked before the work, filled after it, whole or not at all."""
+"""Folders of results: checked before the work, filled after it, whole or not at all; what repeats a run."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import shlex
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from catenary_fe.layout import InputError
-from catenary_fe.results.csv_files import write_csv
+from catenary_fe.results.export import write_csv
 from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
 
 if TYPE_CHECKING:
@@ -35,12 +41,12 @@ class Folder:
         self.kept = False
 
     def keep(self) -> None:
-        """Move what is written so far into place: what fails later does not take it along."""
+        """Move what is written so far into place, so that a later failure does not remove it."""
         replace_all(self.path, self.path.parent)
         self.kept = True
 
     def forget(self, *patterns: str) -> None:
-        """Remove what commands made of the folder's results before, now that other ones were kept."""
+        """Remove files that earlier commands derived from results which have been replaced."""
         for file in [file for pattern in patterns for file in self.path.parent.glob(pattern)]:
             file.unlink(missing_ok=True)
 
@@ -66,14 +72,21 @@ class Folder:
         save_picture(self.path / name, ax)
 
 
-def save_picture(path: Path, ax: Axes) -> None:
-    """Write a picture in the format of the file's ending. Raises InputError where that cannot be."""
-    figure = ax.get_figure(root=True)
-    assert figure is not None
+def save_picture(path: Path, picture: Axes | NDArray[np.uint8]) -> None:
+    """Write axes, or pixels of shape (height, width, 3), in the format of the file's ending.
+
+    Raises InputError where that cannot be.
+    """
     try:
-        metadata = {"Software": None} if path.suffix == ".png" else None
         with atomic_write(path) as aside:
-            figure.savefig(aside, dpi=130, metadata=metadata)
+            if isinstance(picture, np.ndarray):
+                from PIL import Image
+
+                Image.fromarray(picture).save(aside)
+            else:
+                figure = picture.get_figure(root=True)
+                assert figure is not None
+                figure.savefig(aside, dpi=130, metadata={"Software": None} if path.suffix == ".png" else None)
     except InputError:
         raise
     except ValueError as error:  # an unknown format
@@ -128,6 +141,11 @@ def _named(path: str) -> Path:
     return Path(path)
 
 
+def folder_of(path: str | Path) -> Path:
+    """A run's folder, or that of a file in it."""
+    return Path(path) if Path(path).is_dir() else Path(path).parent
+
+
 def run_in(path: str | Path) -> Run:
     """The run in a folder that ``catenary-fe run -o`` wrote, or in a file of it. Raises InputError."""
     from catenary_fe.results import load_run
@@ -165,7 +183,7 @@ def read_record(path: Path) -> dict[str, Any]:
 
 
 def _unmake(folders: Sequence[Path]) -> None:
-    """Remove folders that were made for nothing, inner ones first, unless others have put something there."""
+    """Remove folders that were created in vain, innermost first, unless something is in them."""
     with suppress(OSError):
         for folder in folders:
             folder.rmdir()
@@ -176,3 +194,84 @@ def _remove(path: Path) -> None:
         shutil.rmtree(path, ignore_errors=True)
     else:
         path.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True)
+class InputFiles:
+    """The user's files as they were when the run began.
+
+    layout : bytes of the layout file
+    pantographs : names in the library, or bytes of files
+    """
+
+    layout: bytes
+    pantographs: tuple[str | bytes, ...]
+
+    @classmethod
+    def read(cls, layout: str, pantographs: Sequence[str]) -> InputFiles:
+        """Read the files named on the command line; names that are no files are the library's.
+
+        Raises InputError for a layout that comes through a pipe, which was read already.
+        """
+        if not Path(layout).is_file():
+            raise InputError(
+                f"{layout}: a run with -o keeps its layout, which a pipe has only once; give a file"
+            )
+        paths = [Path(name) for name in pantographs]
+        return cls(
+            Path(layout).read_bytes(),
+            tuple(
+                path.read_bytes() if path.is_file() else name
+                for path, name in zip(paths, pantographs, strict=True)
+            ),
+        )
+
+    def keep(self, folder: Folder, run: Run, options: Sequence[str]) -> None:
+        """Write the files, the command that repeats the run from them, and all inputs as interpreted.
+
+        options : of the command, besides layout and pantographs
+        """
+        files, words = {"layout.toml": self.layout}, ["catenary-fe", "run", "layout.toml"]
+        for number, given in enumerate(self.pantographs, start=1):
+            name = f"pantograph_{number}.toml" if isinstance(given, bytes) else given
+            if isinstance(given, bytes):
+                files[name] = given
+            words += ["--pantograph", name]
+        for name, content in files.items():
+            (folder.path / name).write_bytes(content)
+        sums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+        command = shlex.join([*words, *options])
+        folder.json("inputs.json", {"command": command, "files_sha256": sums} | recorded_inputs(run))
+
+
+def changed_files(folder: Path) -> list[str]:
+    """Names of the kept files that are not as the run found them; none without a record of them.
+
+    Raises InputError where the record is damaged.
+    """
+    sums = read_record(folder / "inputs.json").get("files_sha256", {})
+    if not isinstance(sums, dict):
+        raise InputError(
+            f"{folder / 'inputs.json'}: damaged: files_sha256 is no table; take a copy, or remove it to go on"
+            " without"
+        )
+    return [
+        name
+        for name, before in sums.items()
+        if (folder / name).is_file() and hashlib.sha256((folder / name).read_bytes()).hexdigest() != before
+    ]
+
+
+def recorded_inputs(run: Run) -> dict[str, Any]:
+    """What a run was computed from, library values filled in, ready for JSON."""
+    attrs = run.data.attrs
+    return {
+        "speed_kmh": round(3.6 * run.speed, 9),
+        "method": run.method,
+        "positions_m": run.data["position"].values[:, 0].tolist(),
+        "catenary": json.loads(attrs["catenary"]),
+        "pantographs": json.loads(attrs["pantographs"]),
+        "settings": json.loads(attrs["settings"]),
+        "versions": json.loads(attrs["versions"]),
+        "input_sha256": attrs["input_sha256"],
+    }

@@ -11,23 +11,13 @@ from typing import Any
 
 import click
 
-from catenary_fe.cli.compare import compare
-from catenary_fe.cli.completion import completion
-from catenary_fe.cli.design import form, info, static
-from catenary_fe.cli.export import export
-from catenary_fe.cli.modes import modes
-from catenary_fe.cli.paper import paper
-from catenary_fe.cli.pictures import film, waves
-from catenary_fe.cli.report import report
-from catenary_fe.cli.rerun import rerun
+from catenary_fe.cli.design import form, info, modes, static
+from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
 from catenary_fe.cli.run import run
-from catenary_fe.cli.schema import schema
-from catenary_fe.cli.selfcheck import selfcheck
+from catenary_fe.cli.stored import compare, export, film, report, rerun, view, waves
 from catenary_fe.cli.surroundings import leave, prepare
 from catenary_fe.cli.sweep import sweep
 from catenary_fe.cli.terminal import say
-from catenary_fe.cli.validate import validate
-from catenary_fe.cli.view import view
 from catenary_fe.layout import CatenaryError, InputError, RunInterrupted, counted
 
 EPILOG = """\b
@@ -127,6 +117,6 @@ def entry() -> None:
 
 
 def _stop(number: int, _frame: Any) -> None:
-    """Leave by the same door as after Ctrl-C: what is half done is put away, what is kept is kept."""
+    """Stop as after Ctrl-C: unfinished files are removed, finished ones kept."""
     signal.signal(number, signal.SIG_IGN)  # once is enough
     raise RunInterrupted(number)

@@ -6,33 +6,15 @@ import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from catenary_fe.cli.completion import pantograph_names
-from catenary_fe.cli.criteria import evaluated, exit_code, print_criteria, with_elasticity
-from catenary_fe.cli.folder import PARTIAL, Folder, output_folder, read_record
-from catenary_fe.cli.inputs import InputFiles
-from catenary_fe.cli.many_values import ManyValues
-from catenary_fe.cli.schedules import write_schedules
-from catenary_fe.cli.terminal import (
-    json_option,
-    layout_argument,
-    output_option,
-    planar_option,
-    print_json,
-    print_table,
-    print_warnings,
-    progress_bar,
-    quiet_option,
-    read_layout,
-    say,
-    say_lengths,
-    spans_option,
-    warned,
-    working,
-)
+from catenary_fe.cli import options
+from catenary_fe.cli.design import write_schedules
+from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, read_record
+from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
+from catenary_fe.cli.verdicts import evaluated, exit_code, with_elasticity
 from catenary_fe.layout import (
     DescribedPantograph,
     InputError,
@@ -40,9 +22,12 @@ from catenary_fe.layout import (
     RunInterrupted,
     SolverError,
     counted,
-    layout_warnings,
     load_pantograph,
 )
+from catenary_fe.results import checks_in_words, criteria_in_words
+from catenary_fe.results.check import checks_table
+from catenary_fe.results.criteria import criteria_table
+from catenary_fe.results.quantities import FORCE, NON_UNIFORMITY, UPLIFT, figure_rows
 
 if TYPE_CHECKING:
     from catenary_fe.results import Criterion, Run
@@ -63,67 +48,41 @@ in DIR/partial."""
 WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, from shape to shape
 
 
-@click.command(cls=ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
-@layout_argument
+@click.command(cls=options.ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
+@options.layout
 @click.option(
     "--pantograph",
     "names",
     multiple=True,
     required=True,
-    shell_complete=pantograph_names,
+    shell_complete=options.pantograph_names,
     help="Name in the library, or TOML file.",
 )
 @click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
-@click.option(
-    "--method",
-    type=click.Choice(["nonlinear", "linearised", "exudyn"]),
-    default="nonlinear",
-    show_default=True,
-    help="Linearised: about the static state, many times faster.",
+@options.method(
+    "nonlinear", "linearised", "exudyn", help="Linearised: about the static state, many times faster."
 )
 @click.option(
     "--checkpoint",
     type=click.Path(dir_okay=False),
     help="File that keeps the state of a nonlinear run: started again after a kill, the run goes on from it.",
 )
-@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
-@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
-@click.option(
-    "--filter",
-    "filter_kind",
-    type=click.Choice(["causal", "zero-phase"]),
-    default="causal",
-    show_default=True,
-)
-@spans_option
-@planar_option
+@options.time_step
+@options.element
+@options.low_pass(None, default="causal", show_default=True)
+@options.spans
+@options.planar
 @click.option(
     "--store-wire-ms",
     type=click.FloatRange(0.0),
     help="Interval of the stored shapes of the whole wires, rounded to time steps, 0 for none; unset: 10 with"
     " -o, which reports and films need.",
 )
-@click.option(
-    "--energy",
-    is_flag=True,
-    help="Record energy and check its balance with the method exudyn, too: a tenth slower.",
-)
-@click.option(
-    "--elasticity",
-    "with_curve",
-    is_flag=True,
-    help="Compute the elasticity of the evaluated spans, too, and keep it with the run.",
-)
-@click.option(
-    "--criteria",
-    "system",
-    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
-    help="Judge the run by the limits of this system; exit code 1 on a miss.",
-)
-@output_option
-@json_option
-@quiet_option
+@options.flag("--energy", "Record energy and check its balance with the method exudyn, too: a tenth slower.")
+@options.flag("--elasticity", "Compute the elasticity of the evaluated spans, too, and keep it with the run.")
+@options.criteria("Judge the run by the limits of this system; exit code 1 on a miss.")
+@options.answer()
 def run(
     layout: str,
     names: tuple[str, ...],
@@ -138,19 +97,16 @@ def run(
     store_wire_ms: float | None,
     energy: bool,
     planar: bool,
-    with_curve: bool,
+    elasticity: bool,
     system: PowerSystem | None,
-    output: str | None,
-    as_json: bool,
-    quiet: bool,
+    answer: Answer,
 ) -> int:
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
-    from catenary_fe.statics import find_form
     from catenary_fe.studies import simulate
 
-    catenary = read_layout(layout, planar)
+    catenary, output = options.read_layout(layout, planar), answer.folder
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
@@ -161,12 +117,10 @@ def run(
         store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
-    with warned(layout_warnings(catenary)), output_folder(output) as folder:
-        with working("form finding", not quiet):
-            shape = find_form(catenary, mesh)
-        options = _options(click.get_current_context())
-        kept = partial_kept(output, shape, files, options, filter_kind)
-        with progress_bar(f"run at {speed_kmh:g} km/h", not quiet) as progress, kept:
+    with static_shape(catenary, answer, mesh) as (shape, folder):
+        given = _options(click.get_current_context())
+        kept = partial_kept(output, shape, files, given, filter_kind)
+        with progress_bar(f"run at {speed_kmh:g} km/h", not answer.quiet) as progress, kept:
             result = simulate(
                 shape,
                 pantographs,
@@ -179,26 +133,25 @@ def run(
                 energy=energy,
                 checkpoint=checkpoint,
             )
-        if with_curve:
-            result = with_elasticity(result, shape, quiet)
+        if elasticity:
+            result = with_elasticity(result, shape, answer.quiet)
         summary, rows = evaluated(result, filter_kind, system)
         if folder:
-            files.keep(folder, result, options)
-            with working("pictures", not quiet):
+            files.keep(folder, result, given)
+            with working("pictures", not answer.quiet):
                 write_run(folder, shape, result, summary, rows)
             forget_partial(folder)
-    if as_json:
-        print_json(summary)
-    elif not quiet:
+
+    def tables() -> None:
         _print_summary(catenary.name, summary)
-        print_checks(result)
+        print_table(checks_in_words(result.checks), *checks_table(result.checks))
         if system:
-            print_criteria(system, rows)
+            print_table(f"{system}: {criteria_in_words(rows)}", *criteria_table(rows))
         if output:
-            click.echo(f"results and pictures in {output}, {_megabytes(output):.1f} MB")
-    say_lengths(shape, quiet)
-    if not as_json:
-        print_warnings(summary["warnings"])
+            size = sum(file.stat().st_size for file in Path(output).iterdir() if file.is_file())
+            click.echo(f"results and pictures in {output}, {size / 1e6:.1f} MB")
+
+    answer.show(summary, tables, shape)
     return exit_code(rows)
 
 
@@ -225,7 +178,7 @@ def _options(context: click.Context) -> list[str]:
 def partial_kept(
     output: str | None, shape: Shape, files: InputFiles, options: Sequence[str], filter_kind: Any
 ) -> Iterator[None]:
-    """Where a run is stopped, write what there is of it into a folder inside the output folder."""
+    """Where a run is stopped, write its results so far into a folder inside the output folder."""
     try:
         yield
     except (SolverError, RunInterrupted) as error:
@@ -244,13 +197,13 @@ def partial_kept(
 
 
 def forget_partial(folder: Folder) -> None:
-    """Remove what an earlier run that was stopped left in the folder: now there is a whole one."""
+    """Remove what an earlier run that was stopped left in the folder: it is complete now."""
     place = folder.path.parent / PARTIAL
     if (place / "summary.json").is_file() and "partial" in read_record(place / "summary.json"):
         shutil.rmtree(place, ignore_errors=True)
 
 
-_OF_A_RUN = (  # of another one they would say what is not so
+_OF_A_RUN = (  # they would describe another run
     "criteria.png", "energy.png", "plan.png", "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
@@ -260,8 +213,7 @@ def write_run(
     folder: Folder, shape: Shape, result: Run, summary: dict[str, Any], rows: Sequence[Criterion] = ()
 ) -> None:
     """Results, pictures and summary of a run; its criteria where it was judged."""
-    from catenary_fe import views
-    from catenary_fe.views.plan import head_width
+    from catenary_fe.views.run import plot_criteria, run_pictures
 
     result.save(folder.path / "run.nc")
     folder.json("summary.json", summary)
@@ -270,20 +222,11 @@ def write_run(
     folder.keep()  # the run is safe whatever happens to its pictures
     if another:
         folder.forget(*_OF_A_RUN)
-    folder.picture("layout.png", views.plot_layout(shape.catenary, shape))
-    folder.picture("static_shape.png", views.plot_static_shape(shape))
-    if shape.catenary.is_spatial:
-        width = head_width(result.pantographs)
-        folder.picture("plan.png", views.plot_plan(shape, head_width=width))
-    folder.picture("contact_force.png", views.plot_contact_force(result, filter=summary["filter"]))
-    folder.picture("support_uplift.png", views.plot_support_uplift(result))
-    folder.picture("dropper_forces.png", views.plot_dropper_forces(result))
-    if result.has_energy:
-        folder.picture("energy.png", views.plot_energy(result))
+    for name, ax in run_pictures(result, shape, summary["filter"]):
+        folder.picture(f"{name}.png", ax)
     if rows:
-        folder.picture(
-            "criteria.png", views.plot_criteria(rows, title=_heading(shape.catenary.name, summary))
-        )
+        title = _heading(shape.catenary.name, summary)
+        folder.picture("criteria.png", plot_criteria(rows, title=title))
 
 
 def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[DescribedPantograph]:
@@ -298,31 +241,12 @@ def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[D
     return loaded
 
 
-_ROWS = (
-    ("mean force (N)", "mean_N", ".1f"),
-    ("standard deviation (N)", "std_N", ".1f"),
-    ("  0 to 5 Hz (N)", "std_0_5_Hz_N", ".1f"),
-    ("  5 to 20 Hz (N)", "std_5_20_Hz_N", ".1f"),
-    ("statistical maximum (N)", "statistical_max_N", ".1f"),
-    ("statistical minimum (N)", "statistical_min_N", ".1f"),
-    ("actual maximum (N)", "max_N", ".1f"),
-    ("actual minimum (N)", "min_N", ".1f"),
-    ("contact loss, however short (% of the time)", "contact_loss_percent", ".2f"),
-    ("  in losses over 5 ms (% of the time)", "contact_loss_over_5_ms_percent", ".2f"),
-    ("  number of losses over 5 ms", "losses_over_5_ms", "d"),
-    ("  longest loss (ms)", "longest_loss_ms", ".1f"),
-    ("range of the contact point (mm)", "contact_point_range_mm", ".1f"),
-)
-
-
 def _print_summary(title: str, summary: dict[str, Any]) -> None:
     pantographs = summary["pantographs"]
-    rows = [(text, *(format(p[key], form) for p in pantographs)) for text, key, form in _ROWS]
-    uplift = f"{summary['max_support_uplift_mm']:.1f}"
     blank = [""] * (len(pantographs) - 1)
-    rows.append(("largest uplift at a support (mm)", uplift, *blank))
-    if (uniformity := summary["elasticity_non_uniformity_percent"]) is not None:
-        rows.append(("non-uniformity of the elasticity (%)", f"{uniformity:.2f}", *blank))
+    rows = figure_rows(FORCE.values(), pantographs)
+    of_line = [q for q in (UPLIFT, NON_UNIFORMITY) if summary[q.key] is not None]
+    rows += [(*row, *blank) for row in figure_rows(of_line, [summary])]
     print_table(_heading(title, summary), ("", *(p["name"] for p in pantographs)), rows)
     if blank:
         click.echo(f"governing pantograph: {summary['governing_pantograph']}")
@@ -330,18 +254,6 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
     )
-
-
-def _megabytes(folder: str) -> float:
-    return sum(file.stat().st_size for file in Path(folder).iterdir() if file.is_file()) / 1e6
-
-
-def print_checks(run: Run) -> None:
-    """The quality checks as a table."""
-    from catenary_fe.results import checks_in_words
-
-    rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
-    print_table(checks_in_words(run.checks), ("check", "value", "bound", "verdict"), rows)
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:

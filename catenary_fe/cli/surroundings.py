@@ -1,4 +1,4 @@
-"""What a command finds around it: streams that cannot write every character, no place to keep things."""
+"""The environment of a command: streams of limited encodings, home directories that cannot be written."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _SIMILAR = str.maketrans(
 
 
 def prepare() -> None:
-    """Let neither what is printed nor where the program stands end it."""
+    """Keep limited encodings and unwritable home directories from ending the program."""
     codecs.register_error(SPELT, _spelt)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
-        if stream is None:  # closed by who started us
+        if stream is None:  # closed by the parent process
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=SPELT)
@@ -36,7 +36,7 @@ def prepare() -> None:
 
 
 def leave() -> None:
-    """Let Python end with the command's exit code, also where what was said last cannot be written."""
+    """Let Python end with the command's exit code, even where its last output cannot be written."""
     for name in ("stdout", "stderr"):
         try:
             getattr(sys, name).flush()
@@ -51,7 +51,7 @@ def writes_unicode(stream: object) -> bool:
 
 
 def readable(name: str) -> str:
-    """A file's name as a text: for bytes that the surroundings' encoding lacks, Python keeps stand-ins."""
+    """A file's name as text, without the surrogates that stand for undecodable bytes."""
     try:
         return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
     except UnicodeEncodeError:
@@ -59,7 +59,7 @@ def readable(name: str) -> str:
 
 
 def _spelt(error: UnicodeError) -> tuple[str, int]:
-    """Characters that the stream's encoding lacks, by others that every encoding has."""
+    """Replace characters that the stream's encoding lacks by ASCII ones."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return "".join(map(_spelling, readable(error.object[error.start : error.end]))), error.end

@@ -7,27 +7,19 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
+from catenary_fe.cli import options
 from catenary_fe.cli.folder import output_folder
-from catenary_fe.cli.many_values import ManyValues
 from catenary_fe.cli.surroundings import readable
-from catenary_fe.cli.sweep_verdicts import Verdict, exit_code, in_words, remarks, verdict_of, warn_once
-from catenary_fe.cli.terminal import (
-    json_option,
-    layout_argument,
-    print_json,
-    print_table,
-    progress_bar,
-    quiet_option,
-    say,
-    spans_option,
-)
+from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_bar, say
+from catenary_fe.cli.verdicts import Verdict, in_words, remarks, sweep_exit_code, verdict_of, warn_once
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
 from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
+from catenary_fe.results.quantities import DROPPER_FORCE, FORCE, SLACK_DROPPERS, UPLIFT
 
 if TYPE_CHECKING:
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
@@ -48,17 +40,15 @@ A sweep that was stopped goes on when it is started again with the same folder."
 
 _MOST = 100_000
 _FIGURES = (
-    ("mean_N", "mean N"), ("std_N", "σ N"), ("statistical_min_N", "stat. min N"),
-    ("statistical_max_N", "stat. max N"), ("min_N", "min N"), ("max_N", "max N"),
-    ("contact_loss_over_5_ms_percent", "loss > 5 ms %"), ("max_support_uplift_mm", "uplift mm"),
+    *(FORCE[name] for name in ("mean", "std", "statistical_min", "statistical_max", "min", "max")),
+    FORCE["long_contact_loss"], UPLIFT,
 )  # fmt: skip
-_DIGITS = {"contact_loss_over_5_ms_percent": 2}
 
 
 @click.command(
-    cls=ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
+    cls=options.ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
 )
-@layout_argument
+@options.layout
 @click.option("--speed-kmh", "speeds", multiple=True, required=True, help="Speeds, or first:last:step.")
 @click.option(
     "--pantograph", "names", multiple=True, required=True, help="Names in the library, or TOML files."
@@ -68,29 +58,15 @@ _DIGITS = {"contact_loss_over_5_ms_percent": 2}
     help="Positions in m at the start: each case runs one pantograph at each.",
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
-@click.option(
-    "--method",
-    type=click.Choice(["linearised", "nonlinear", "exudyn"]),
-    default="linearised",
-    show_default=True,
-)
-@click.option("--time-step-ms", type=float, default=1.0, show_default=True, help="Time step in ms.")
-@click.option("--element-m", type=float, help="Largest element of the contact wire in m.")
-@spans_option
-@click.option(
-    "--criteria",
-    "system",
-    type=click.Choice(get_args(PowerSystem), case_sensitive=False),
-    help="Judge the cases by the limits of this system; exit code 1 where one misses any.",
-)
+@options.method("linearised", "nonlinear", "exudyn")
+@options.time_step
+@options.element
+@options.spans
+@options.criteria("Judge the cases by the limits of this system; exit code 1 where one misses any.")
 @click.option("--jobs", type=click.IntRange(1), help="Number of processes; unset: one a core.")
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
-@click.option("--retry-failed", is_flag=True, help="Run failed cases of an earlier start again.")
-@click.option(
-    "-o", "--output", required=True, type=click.Path(), metavar="DIR", help="Folder for table and pictures."
-)
-@json_option
-@quiet_option
+@options.flag("--retry-failed", "Run failed cases of an earlier start again.")
+@options.answer("Folder for table and pictures.", required=True)
 def sweep(
     layout: str,
     speeds: tuple[str, ...],
@@ -105,15 +81,14 @@ def sweep(
     jobs: int | None,
     scheduler: str | None,
     retry_failed: bool,
-    output: str,
-    as_json: bool,
-    quiet: bool,
+    answer: Answer,
 ) -> int:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
     from catenary_fe.studies.sweep import LOST, SweepSettings, run_sweep
 
+    output = str(answer.folder)
     if jobs and scheduler:
         raise click.UsageError("--jobs and --scheduler: the cluster has its own processes; give one of them")
     axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
@@ -127,7 +102,7 @@ def sweep(
         time=TimeSettings(step=time_step_ms / 1e3),
     )
     cases = _cases(layout, axes, positions, spans)
-    with progress_bar(counted(count, "case"), not quiet) as progress, _kept(output):
+    with progress_bar(counted(count, "case"), not answer.quiet) as progress, _kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -140,16 +115,16 @@ def sweep(
     verdicts = [verdict_of(record, case, system) for record, case in zip(records, cases, strict=True)]
     rows = [row for both in zip(records, verdicts, strict=True) for row in _rows(*both, system)]
     _write(output, rows, axes, verdicts)
-    if as_json:
+    if answer.as_json:
         print_json(rows)
-    elif not quiet:
+    elif not answer.quiet:
         _print(rows, axes)
         for words in in_words(verdicts, system):
             click.echo(words)
         click.echo(f"table and pictures in {output}")
-    if not quiet:
+    if not answer.quiet:
         _say_lengths(cases)
-    if not as_json:
+    if not answer.as_json:
         warn_once(verdicts)
     failed = [record for record in records if "error" in record]
     for record in failed:
@@ -164,7 +139,7 @@ def sweep(
         )
     if failed and (lost or len(failed) == len(records)):
         raise click.exceptions.Exit((lost or failed)[0]["exit_code"])
-    return exit_code(verdicts, system)
+    return sweep_exit_code(verdicts, system)
 
 
 def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
@@ -173,11 +148,8 @@ def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
 
     given = sum(isinstance(case, SweepCase) and case.catenary.gives_dropper_lengths for case in cases)
     if given:
-        say(
-            "note",
-            f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives",
-            "cyan",
-        )
+        what = f"{given} of {len(cases)} cases are hung with dropper lengths that the layout gives"
+        say("note", what, "cyan")
 
 
 @contextmanager
@@ -227,11 +199,8 @@ def _value(text: str) -> Any:
 
 
 def _number(text: str, option: str, whole: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
+    value = _value(text)
+    if not (isinstance(value, float) and np.isfinite(value)):
         raise click.BadParameter(f"{option} {whole}: {text!r} is not a number")
     return value
 
@@ -278,10 +247,8 @@ def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[
         return [values | {"error": verdict.error}]
     summary = record["summary"]
     several = len(summary["pantographs"]) > 1
-    common = {
-        key: summary[key]
-        for key in ("max_support_uplift_mm", "slack_droppers", "largest_dropper_force_N", "simulated_s")
-    }
+    keys = (UPLIFT.key, SLACK_DROPPERS.key, DROPPER_FORCE.key, "simulated_s")
+    common = {key: summary[key] for key in keys}
     return [
         values
         | {"number": i}
@@ -337,18 +304,10 @@ def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
     table = [
         [
             *(row.get(name, "") for name in varied),
-            *(_shown(row, key) for key, _ in _FIGURES),
-            *(_count(row.get(key, "")) for key in said),
+            *("failed" if row["error"] else q.number(row[q.key]) for q in _FIGURES),
+            *(len(row[key].split("; ")) if row.get(key) else "" for key in said),
         ]
         for row in rows
     ]
-    titles = [*varied, *(title for _, title in _FIGURES), *(key.replace("_", " ") for key in said)]
+    titles = [*varied, *(f"{q.short} {q.unit}" for q in _FIGURES), *(key.replace("_", " ") for key in said)]
     print_table("sweep", titles, table)
-
-
-def _count(names: str) -> int | str:
-    return len(names.split("; ")) if names else ""
-
-
-def _shown(row: dict[str, Any], key: str) -> str:
-    return "failed" if row["error"] else f"{row[key]:.{_DIGITS.get(key, 1)}f}"

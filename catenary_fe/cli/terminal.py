@@ -1,75 +1,55 @@
-"""What the commands share: tables, progress, JSON, options."""
+"""What the commands share: tables, progress, JSON."""
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.surroundings import writes_unicode
-from catenary_fe.layout import Catenary, CatenaryError, load_catenary
-from catenary_fe.layout.files import MOST_SPANS
-
-_RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
+from catenary_fe.layout import Catenary, CatenaryError
+from catenary_fe.layout.preflight import layout_warnings
 
 if TYPE_CHECKING:
+    from catenary_fe.fe import MeshSettings
     from catenary_fe.statics import Shape
 
-layout_argument = click.argument("layout", type=click.Path())
-planar_option = click.option(
-    "--planar", is_flag=True, help="Take the layout's equivalent in the vertical plane."
-)
-json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object and nothing else.")
-quiet_option = click.option("--quiet", is_flag=True, help="No progress, no table.")
-output_option = click.option(
-    "-o", "--output", type=click.Path(), metavar="DIR", help="Folder for results and pictures."
-)
 
+@dataclass(frozen=True)
+class Answer:
+    """Where a command's results go: into a folder, and as JSON or as tables on standard output.
 
-def _span_numbers(context: click.Context, parameter: click.Parameter, text: str | None) -> list[int] | None:
-    """Numbers and ranges, each span once, in the order given."""
-    if text is None:
-        return None
-    numbers: dict[int, None] = {}
-    for part in text.split(","):
-        found = _RANGE.fullmatch(part)
-        first, last = (int(found[1]), int(found[2] or found[1])) if found else (1, 0)
-        if not 0 <= last - first < MOST_SPANS:
-            raise click.BadParameter(
-                f"{text!r} is not a list of spans or rising ranges such as 5,6 or 5-17,20"
-            )
-        numbers |= dict.fromkeys(range(first, last + 1))
-    return list(numbers)
+    folder : its path; unset: none
+    as_json : JSON in place of tables, and nothing else
+    quiet : neither tables nor progress
+    """
 
+    folder: str | None
+    as_json: bool
+    quiet: bool
 
-spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to evaluate, e.g. 5,6 or 5-17; unset: the layout's."
-)
-shown_spans_option = click.option(
-    "--spans",
-    callback=_span_numbers,
-    help="Spans to show, e.g. 5,6 or 5-17; unset: around the evaluated ones.",
-)
-drawn_spans_option = click.option(
-    "--spans", callback=_span_numbers, help="Spans to draw, e.g. 5,6; unset: the line, and two spans closer."
-)
-
-
-def read_layout(path: str, planar: bool) -> Catenary:
-    """The catenary of a layout file, or its equivalent in the vertical plane. Raises InputError."""
-    catenary = load_catenary(path)
-    return catenary.planar() if planar else catenary
+    def show(self, result: dict[str, Any], tables: Callable[[], None], shape: Shape | None = None) -> None:
+        """The result as JSON or as its tables, and its warnings; a note on given dropper lengths."""
+        if self.as_json:
+            print_json(result)
+        elif not self.quiet:
+            tables()
+        if shape:
+            say_lengths(shape, self.quiet)
+        if not self.as_json:
+            print_warnings(result["warnings"])
 
 
 def print_json(value: Any) -> None:
-    """One JSON document on standard output; not-a-number never appears in it."""
+    """One JSON document on standard output; it never contains NaN."""
     text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
     try:
         text.encode(sys.stdout.encoding or "ascii")
@@ -127,7 +107,7 @@ def print_warnings(warnings: Sequence[str]) -> None:
 
 
 def working(text: str, shown: bool) -> AbstractContextManager[Any]:
-    """A sign of life on standard error for work of a few seconds, if that is a terminal."""
+    """A spinner on standard error for work of a few seconds, if that is a terminal."""
     if not shown or not sys.stderr.isatty():
         return nullcontext()
     from rich.console import Console
@@ -147,7 +127,7 @@ def warned(warnings: Sequence[str]) -> Iterator[None]:
 
 
 def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
-    """What tells a log that long work goes on: share done and time left, at most so often in s."""
+    """Progress for a log: share done and time left, at most one line every so many seconds."""
     begin = last = time.monotonic()
 
     def say(share: float) -> None:
@@ -163,7 +143,7 @@ def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
 
 @contextmanager
 def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | None]:
-    """A progress bar with the time left on standard error; where that is no terminal, a line now and then."""
+    """A progress bar with the time left on standard error; where that is not a terminal, occasional lines."""
     if not shown:
         yield None
         return
@@ -177,3 +157,19 @@ def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | N
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task(text, total=1.0)
         yield lambda share: bars.update(task, completed=share)
+
+
+@contextmanager
+def static_shape(
+    catenary: Catenary, answer: Answer, mesh: MeshSettings | None = None
+) -> Iterator[tuple[Shape, Folder | None]]:
+    """The line at rest and the output folder, which is filled when the work that follows is done.
+
+    Raises InputError and SolverError, the layout's warnings said before them.
+    """
+    from catenary_fe.statics import find_form
+
+    with warned(layout_warnings(catenary)), output_folder(answer.folder) as folder:
+        with working("form finding", not answer.quiet):
+            shape = find_form(catenary, mesh)
+        yield shape, folder

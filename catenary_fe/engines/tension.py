@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 INTERVAL = 0.05  # [s] between readings in a run: 4 m at 300 km/h
-_POINTS = (1 + np.array([-1.0, 1.0]) / np.sqrt(3)) / 2  # Gauss: the mean of a cubic wire's strain
 
 
 class TensionGauge:
@@ -27,37 +26,20 @@ class TensionGauge:
     """
 
     def __init__(self, system: System) -> None:
-        self._axes = system.axes
-        self._reference = system.reference.reshape(-1, 2 * system.axes)
-        self._first = system.first // (2 * system.axes)
+        nodes = system.first // (2 * system.axes)
         sections, owner = [], []
         for number, wire in enumerate(system.wires):
             starts = wire.supports[:-1] if wire.supports.size else np.array([0])
-            sections.append(np.searchsorted(self._first, wire.first + starts))
+            sections.append(np.searchsorted(nodes, wire.first + starts))
             owner += [number] * starts.size
         self._sections, self._owner = np.concatenate(sections), np.array(owner)
-        lengths, cables = system.cables.length, system.cables
-        self._length = np.add.reduceat(lengths, self._sections)
-        self._stiffness = cables.axial_stiffness[self._sections]
-        self._nominal = -cables.rest_strain[self._sections] * self._stiffness
-        xi, one = _POINTS, np.ones((lengths.size, 1))
-        self._rise = 6 * (xi - xi**2) / lengths[:, None]
-        self._left, self._right = one * (1 - 4 * xi + 3 * xi**2), one * (3 * xi**2 - 2 * xi)
-        self._share = lengths / 2
+        self._system, self._length = system, system.cables.length
+        self._whole = np.add.reduceat(self._length, self._sections)
 
-    def tensions(self, q: Floats) -> Floats:
-        """[N], shape (sections,), at the system's coordinates ``q``."""
-        axes = self._axes
-        shape = self._reference + q[: self._reference.size].reshape(self._reference.shape)
-        a, b = shape[self._first], shape[self._first + 1]
-        along: Floats = (
-            self._rise[:, :, None] * (b - a)[:, None, :axes]
-            + self._left[:, :, None] * a[:, None, axes:]
-            + self._right[:, :, None] * b[:, None, axes:]
-        )
-        strain = (np.sqrt((along**2).sum(axis=2)) - 1).sum(axis=1) * self._share
-        mean: Floats = np.add.reduceat(strain, self._sections) / self._length
-        tensions: Floats = self._nominal + self._stiffness * mean
+    def tensions(self, moved: Floats) -> Floats:
+        """[N], shape (sections,), at displacements of shape (all,)."""
+        pulls = np.concatenate(self._system.tensions(moved[: self._system.place.size])) * self._length
+        tensions: Floats = np.add.reduceat(pulls, self._sections) / self._whole
         return tensions
 
     def largest_change(self, now: Floats, before: Floats) -> tuple[Floats, Integers]:

@@ -82,6 +82,18 @@ def tangent_blocks(cables: Cables, values: Floats, *, definite: bool = False) ->
     return total.reshape(count, 4 * axes, 4 * axes)
 
 
+def mean_stretch(cables: Cables, values: Floats) -> Floats:
+    """Shape (elements,): mean of |r'| - 1, by the two Gauss points that make a cubic wire's exact.
+
+    values : shape (elements, 4, axes), position and slope of the first node, then of the second
+    """
+    found = np.zeros(cables.length.size)
+    for xi, share in zip(*_BENDING, strict=True):
+        a, _ = _weights((xi + 1) / 2, cables.length)
+        found += share / 2 * (np.linalg.norm(np.einsum("ei,eik->ek", a, values), axis=1) - 1)
+    return found
+
+
 def strain_energy(cables: Cables, values: Floats) -> Floats:
     """[J], shape (elements,), of elements with positions and slopes ``values``, shape (elements, 4, axes)."""
     found = np.zeros(cables.length.size)

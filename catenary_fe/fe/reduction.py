@@ -90,6 +90,7 @@ class LinearModel:
     stretch : elements whose inclination lengthens a gap
     gaps : where these tensions are
     imbalance : [N], shape (size,), what the line is out of balance where it was installed
+    patterns : [N], shape (loads, size), of loads that vary in time
     vertical : numbers of all heights and vertical slopes: among all coordinates of the line, and among these
     spatial : whether it has coordinates across the track
     """
@@ -108,6 +109,7 @@ class LinearModel:
     links: SteadyArmBars
     stretch: StretchCoupling
     imbalance: Floats
+    patterns: Floats
     vertical: tuple[Integers, Integers]
     spatial: bool
 
@@ -153,6 +155,7 @@ def linear_model(system: System) -> LinearModel:
         links=_swinging_links(system, place),
         stretch=_stretch_coupling(system, wires, place),
         imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
+        patterns=np.reshape([T[:whole].T @ load.pattern for load in system.time_loads], (-1, T.shape[1])),
         vertical=(vertical, place[vertical]),
         spatial=system.spatial,
     )

@@ -62,6 +62,15 @@ class Springs:
         pull: Floats = (self.tension(span) / np.linalg.norm(span, axis=-1))[..., None] * span
         return np.concatenate([pull, -pull], axis=-1) if self.pulls_only else pull
 
+    def damper_forces(self, total: Floats, rates: Floats) -> Floats:
+        """[N], shape (springs, 2 * axes): of the dampers of droppers, at most their springs' forces."""
+        span = self.span(total)
+        direction = span / np.linalg.norm(span, axis=-1)[..., None]
+        axes, spring = np.arange(self.pivot.shape[1]), self.tension(span)
+        rate = rates[self.last[:, None] + axes] - rates[self.first[:, None] + axes]
+        drag = np.clip(self.damping * (rate * direction).sum(axis=1), -spring, spring)
+        return np.hstack([drag[:, None] * direction, -drag[:, None] * direction])
+
     def blocks(self, total: Floats, *, taut: bool) -> Floats:
         """Stiffness [N/m], shape (springs, m, m), over :meth:`index`.
 

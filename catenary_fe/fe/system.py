@@ -9,6 +9,7 @@ and the ends of stitch wires share the messenger wire's coordinates.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.assembly import scattered
-from catenary_fe.fe.cable import Cables, inner_forces, mass_blocks, strain_energy, tangent_blocks
+from catenary_fe.fe.cable import (
+    Cables,
+    hermite,
+    inner_forces,
+    mass_blocks,
+    mean_stretch,
+    strain_energy,
+    tangent_blocks,
+)
 from catenary_fe.fe.contact import ContactPath
 from catenary_fe.fe.installation import (
     Installation,
@@ -57,6 +66,18 @@ class WireNodes:
 
 
 @dataclass(frozen=True)
+class TimeLoad:
+    """A load that varies in time.
+
+    pattern : [N], shape (all,), forces on all coordinates where the signal is 1
+    signal : of times [s], shape (times,), numbers of that shape
+    """
+
+    pattern: Floats
+    signal: Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
 class System:
     """The assembled line.
 
@@ -76,6 +97,7 @@ class System:
     alpha, beta : Rayleigh damping of the wires
     wires : contact wires, messenger wire, stitch wires
     contact_wire_height : [m], nominal, from which pantographs count
+    time_loads : besides the constant forces
     """
 
     axes: int
@@ -98,6 +120,7 @@ class System:
     beta: float
     wires: tuple[WireNodes, ...]
     contact_wire_height: float
+    time_loads: tuple[TimeLoad, ...] = ()
 
     @property
     def size(self) -> int:
@@ -182,6 +205,57 @@ class System:
             at = springs.index()
             residual += np.bincount(at.ravel(), springs.forces(total).ravel(), minlength=residual.size)
         return residual
+
+    def row(self, wire: int, x: float, axis: int = -1) -> Floats:
+        """Shape (all,): a wire's coordinate at any place [m] along the track as made of all coordinates.
+
+        wire : its number
+        axis : 0 along the track, -1 up, 1 in space to the left
+        """
+        nodes, axes = self.wires[wire], self.axes
+        e = int(np.clip(np.searchsorted(nodes.x, x, side="right") - 1, 0, nodes.x.size - 2))
+        first = 2 * axes * (nodes.first + e) + axis % axes
+        length = self.cables.length[np.searchsorted(self.first, 2 * axes * (nodes.first + e))]
+        row = np.zeros(self.place.size)
+        share = (x - nodes.x[e]) / (nodes.x[e + 1] - nodes.x[e])
+        row[first + axes * np.arange(4)] = hermite(share, length)
+        return row
+
+    def distributed(self, per_length: Floats, axis: int = -1) -> Floats:
+        """[N], shape (all,): forces of a load along the wires.
+
+        per_length : [N/m], shape (elements,)
+        axis : 0 along the track, -1 up, 1 in space to the left
+        """
+        blocks = self.element_mass * (per_length / self.mass_per_length)[:, None, None]
+        points = np.arange(self.place.size) % (2 * self.axes) == axis % self.axes
+        forces: Floats = scattered([(self.elements(), blocks)], self.place.size) @ points.astype(float)
+        return forces
+
+    def load(self, times: Floats) -> tuple[Floats, Floats]:
+        """Loads that vary in time: patterns [N], shape (loads, free), and signals, shape (loads, times)."""
+        patterns = [self.gather(load.pattern) for load in self.time_loads]
+        signals = [np.asarray(load.signal(times), dtype=float) for load in self.time_loads]
+        return np.reshape(patterns, (-1, self.size)), np.reshape(signals, (-1, times.size))
+
+    def forces(self, moved: Floats, rates: Floats, time: float) -> Floats:
+        """[N], shape (free,): all that accelerates the line, but for contacts.
+
+        moved, rates : [m], [m/s], shape (all,), displacements and velocities
+        time : [s]
+        """
+        patterns, signals = self.load(np.array([time]))
+        total, droppers = self.reference + moved, self.droppers
+        drag = self.damping() @ rates
+        at, pull = droppers.index(), droppers.damper_forces(total, rates)
+        drag -= np.bincount(at.ravel(), pull.ravel(), minlength=drag.size)
+        return self.gather(self.out_of_balance(moved) - drag) + signals[:, 0] @ patterns
+
+    def tensions(self, moved: Floats) -> list[Floats]:
+        """[N], for each wire shape (nodes - 1,): tension of its elements, mean of each."""
+        values = (self.reference + moved)[self.elements()].reshape(-1, 4, self.axes)
+        pulls = self.cables.axial_stiffness * (mean_stretch(self.cables, values) - self.cables.rest_strain)
+        return np.split(pulls, np.cumsum([wire.x.size - 1 for wire in self.wires])[:-1])
 
     def tangent(self, moved: Floats, *, taut: bool = True) -> Any:
         """Stiffness over the free coordinates, sparse.

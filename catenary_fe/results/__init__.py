@@ -23,47 +23,18 @@ from catenary_fe.results.criteria import (
     labels,
     missed,
 )
-from catenary_fe.results.elasticity import Elasticity
 from catenary_fe.results.export import history_tables, write_tables
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import ModeKind, Modes, WireShapes
+from catenary_fe.results.modes import ModalRun, ModeKind, Modes, WireShapes
 from catenary_fe.results.quality import run_checks
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
-from catenary_fe.results.wires import WireHistory
+from catenary_fe.results.wires import Elasticity, WireHistory
 
 __all__ = [
-    "Check",
-    "Column",
-    "Criterion",
-    "Elasticity",
-    "ForceStatistics",
-    "InputDifference",
-    "KeyFigures",
-    "ModalRun",
-    "ModeKind",
-    "Modes",
-    "Run",
-    "WireHistory",
-    "WireShapes",
-    "band_pass",
-    "checks_in_words",
-    "criteria_in_words",
-    "criteria_rows",
-    "excess",
-    "failed_checks",
-    "force_statistics",
-    "governing",
-    "history_tables",
-    "input_differences",
-    "judge",
-    "key_figures",
-    "labels",
-    "load_run",
-    "low_pass",
-    "missed",
-    "run_checks",
-    "spectrum",
-    "write_tables",
-]
+    "Check", "Column", "Criterion", "Elasticity", "ForceStatistics", "InputDifference", "KeyFigures",
+    "ModalRun", "ModeKind", "Modes", "Run", "WireHistory", "WireShapes", "band_pass", "checks_in_words",
+    "criteria_in_words", "criteria_rows", "excess", "failed_checks", "force_statistics", "governing",
+    "history_tables", "input_differences", "judge", "key_figures", "labels", "load_run", "low_pass",
+    "missed", "run_checks", "spectrum", "write_tables",
+]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Runs side by side: their key figures, and what went into them differently."""
+"""Runs side by side: their key figures, and the inputs that differ."""
 
 from __future__ import annotations
 
@@ -10,28 +10,19 @@ from typing import Any
 
 from catenary_fe.layout import InputError
 from catenary_fe.results.check import FAILED
+from catenary_fe.results.quantities import (
+    CHECKS_FAILED,
+    FORCE,
+    NON_UNIFORMITY,
+    SLACK_DROPPERS,
+    UPLIFT,
+    Quantity,
+    figure_rows,
+)
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 
-QUANTITIES = {
-    "mean_N": "mean force (N)",
-    "std_N": "standard deviation (N)",
-    "std_0_5_Hz_N": "of which 0 to 5 Hz (N)",
-    "std_5_20_Hz_N": "of which 5 to 20 Hz (N)",
-    "statistical_max_N": "statistical maximum (N)",
-    "statistical_min_N": "statistical minimum (N)",
-    "max_N": "actual maximum (N)",
-    "min_N": "actual minimum (N)",
-    "contact_loss_percent": "contact loss, however short (% of the time)",
-    "contact_loss_over_5_ms_percent": "contact loss over 5 ms (% of the time)",
-    "losses_over_5_ms": "number of losses over 5 ms",
-    "longest_loss_ms": "longest loss (ms)",
-    "contact_point_range_mm": "range of the contact point (mm)",
-    "max_support_uplift_mm": "largest uplift at a support (mm)",
-    "slack_droppers": "droppers that went slack",
-    "elasticity_non_uniformity_percent": "non-uniformity of the elasticity (%)",
-    "checks_failed": "checks failed",
-}
+COMPARED = (*FORCE.values(), UPLIFT, SLACK_DROPPERS, NON_UNIFORMITY, CHECKS_FAILED)
 _LISTED = 12  # values by themselves
 
 
@@ -40,7 +31,7 @@ class Column:
     """Key figures of one pantograph of one run.
 
     label : of the run, and of the pantograph where there are several
-    values : by the keys of ``QUANTITIES``; None where a run does not hold it
+    values : by the keys of ``COMPARED``; None where a run does not hold it
     """
 
     label: str
@@ -71,14 +62,31 @@ def key_figures(runs: Sequence[Run], labels: Sequence[str], filter: FilterKind =
     columns = []
     for run, label in zip(runs, labels, strict=True):
         summary = run.summary(filter=filter)
-        summary["checks_failed"] = len(run.failed_checks)
+        summary[CHECKS_FAILED.key] = len(run.failed_checks)
         pantographs = summary["pantographs"]
         for statistics in pantographs:
-            values = {key: statistics.get(key, summary.get(key)) for key in QUANTITIES}
+            values = {q.key: statistics.get(q.key, summary.get(q.key)) for q in COMPARED}
             columns.append(
                 Column(f"{label}: {statistics['name']}" if len(pantographs) > 1 else label, values)
             )
     return columns
+
+
+def figures_table(columns: Sequence[Column]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names of the columns, and rows of key figures; of two runs with their difference."""
+    names = ("", *(column.label for column in columns))
+    rows = figure_rows(COMPARED, [column.values for column in columns])
+    if len(columns) == 2:
+        names = (*names, "difference")
+        for i, q in enumerate(COMPARED):
+            rows[i] = (*rows[i], _change(q, *(column.values[q.key] for column in columns)))
+    return names, [row for row in rows if set(row[1:]) != {"–"}]
+
+
+def _change(quantity: Quantity, before: float | None, after: float | None) -> str:
+    if before is None or after is None:
+        return "–"
+    return f"{round(after - before, quantity.digits) + 0.0:+.{quantity.digits}f}"
 
 
 def failed_checks(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
@@ -139,7 +147,7 @@ def _leaves(value: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _text(values: list[Any]) -> str:
-    """The different values in their order; many of them by how many they are and how far they reach."""
+    """The distinct values in order; of many, their number and range."""
     different = list(dict.fromkeys(v for v in values if v is not None))
     if not different:
         return "–"

@@ -22,6 +22,7 @@ from catenary_fe.layout.current_collection import (
     mean_force_limit,
 )
 from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.results.quantities import DIGITS, FORCE, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
@@ -60,7 +61,7 @@ class Criterion:
 
     @property
     def passed(self) -> bool | None:
-        """Whether the value keeps the limit; None where no limit is known."""
+        """Whether the value meets the limit; None where no limit is known."""
         if self.limit is None:
             return None
         allowed = self.limit + (self.tolerance if self.relation == "at most" else -self.tolerance)
@@ -68,7 +69,7 @@ class Criterion:
 
     @property
     def used(self) -> float | None:
-        """Share of the limit: 1 at the limit, more beyond it, infinite where nothing of it is left.
+        """Share of the limit: 1 at the limit, more beyond it, infinite where the margin is zero or negative.
 
         Value over limit, or limit over value where that is a lower one; of a figure that is a mean less its
         scatter, the scatter over what the mean has above the limit. None where no limit is known.
@@ -86,7 +87,7 @@ class Criterion:
 
     @property
     def limit_text(self) -> str:
-        """Relation, limit and unit as a table says them; '–' where no limit is known."""
+        """Relation, limit and unit as tables write them; '–' where no limit is known."""
         if self.limit is None:
             return "–"
         about = f" (± {self.tolerance:g})" if self.tolerance else ""
@@ -94,13 +95,13 @@ class Criterion:
 
     @property
     def value_text(self) -> str:
-        """Value and unit as a table says them."""
+        """Value and unit as tables write them."""
         return f"{self.value:.{self._digits}f} {self.unit}"
 
     @property
     def _digits(self) -> int:
         """Decimals that a table shows: more than usual where value and limit would look the same."""
-        usual = 2 if self.unit == "%" else 1
+        usual = DIGITS.get(self.unit, 1)
         value, limit = self.value, self.limit
         if limit is None or limit == value:
             return usual
@@ -144,7 +145,7 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
     filter : "causal" (as EN 50317 measures) or "zero-phase"
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, 0.1 or 0.2 % of the time in
-    losses of contact longer than 5 ms, room for twice the uplift at steady arms that say how much they have
+    losses of contact longer than 5 ms, clearance for twice the uplift at steady arms that state theirs
     (``uplift_room``), 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
     it (:meth:`Run.with_elasticity`); no limit of it is known here.
 
@@ -177,10 +178,10 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
     if figures.non_uniformity is not None:
         rows.append(
             Criterion(
-                name="elasticity non-uniformity",
-                value=100 * figures.non_uniformity,
+                name=NON_UNIFORMITY.name,
+                value=NON_UNIFORMITY.shown(figures.non_uniformity),
                 limit=None,
-                unit="%",
+                unit=NON_UNIFORMITY.unit,
                 source="no limit known here",
             )
         )
@@ -188,7 +189,7 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
 
 
 def missed(rows: Iterable[Criterion]) -> list[Criterion]:
-    """Those whose limit is not kept."""
+    """Criteria whose limit is not met."""
     return [row for row in rows if row.passed is False]
 
 
@@ -202,7 +203,7 @@ def criteria_in_words(rows: Sequence[Criterion]) -> str:
 
 
 def excess(rows: Iterable[Criterion]) -> dict[str, float]:
-    """By pantograph that misses a criterion: how many times its limit the one is that it misses by most."""
+    """Largest share of a limit that each pantograph which misses a criterion uses."""
     found: dict[str, float] = {}
     for row in missed(rows):
         if row.pantograph:
@@ -216,83 +217,77 @@ def labels(rows: Sequence[Criterion]) -> list[str]:
     return [f"{row.name}, {row.pantograph}" if several and row.pantograph else row.name for row in rows]
 
 
+def criteria_table(rows: Sequence[Criterion]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names of the columns, and a row of texts for each criterion, with what its limit rests on."""
+    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
+    return columns, [
+        (label, row.value_text, row.limit_text, row.verdict, row.source)
+        for label, row in zip(labels(rows), rows, strict=True)
+    ]
+
+
+def _row(s: ForceStatistics, figure: str, **limit: Any) -> Criterion:
+    """The criterion of a contact-force figure, named by its attribute."""
+    quantity = FORCE[figure]
+    value = quantity.shown(getattr(s, figure))
+    return Criterion(name=quantity.name, pantograph=s.pantograph, value=value, unit=quantity.unit, **limit)
+
+
 def _against(limit: Limit) -> dict[str, Any]:
-    return {"limit": limit.value, "unit": "N", "source": limit.source, "recalled": limit.recalled}
+    return {"limit": limit.value, "source": limit.source, "recalled": limit.recalled}
 
 
 def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance: float) -> list[Criterion]:
-    figure: dict[str, Any] = {
-        "name": "mean force",
-        "pantograph": s.pantograph,
-        "value": s.mean,
-        "tolerance": tolerance,
-    }
+    low, high = mean_force_limit(system, "minimum", speed), mean_force_limit(system, "maximum", speed)
     return [
-        Criterion(**figure, relation="at least", **_against(mean_force_limit(system, "minimum", speed))),
-        Criterion(**figure, relation="at most", **_against(mean_force_limit(system, "maximum", speed))),
+        _row(s, "mean", tolerance=tolerance, relation="at least", **_against(low)),
+        _row(s, "mean", tolerance=tolerance, relation="at most", **_against(high)),
     ]
 
 
 def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Criterion]:
     largest, loss = _against(force_limit(system, speed)), contact_loss_limit(speed)
+    share = f"{DEVIATION_SHARE:g} of the mean force (secondary source)"
+    above_0 = "mean force − 3 σ above 0 (secondary source)"
+    long_losses = {
+        "limit": None if loss.value is None else 100 * loss.value,
+        "source": f"share of the time in {loss.source}",
+        "recalled": loss.recalled,
+    }
     return [
-        Criterion(
-            name="standard deviation",
-            pantograph=s.pantograph,
-            value=s.std,
-            limit=DEVIATION_SHARE * s.mean,
-            unit="N",
-            source=f"{DEVIATION_SHARE:g} of the mean force (secondary source)",
-        ),
-        Criterion(
-            name="statistical minimum",
-            pantograph=s.pantograph,
-            value=s.statistical_min,
-            relation="above",
-            limit=0.0,
-            unit="N",
-            source="mean force − 3 σ above 0 (secondary source)",
-            start=s.mean,
-        ),
-        Criterion(name="statistical maximum", pantograph=s.pantograph, value=s.statistical_max, **largest),
-        Criterion(name="actual maximum", pantograph=s.pantograph, value=s.max, **largest),
-        Criterion(
-            name="contact loss over 5 ms",
-            pantograph=s.pantograph,
-            value=100 * s.long_contact_loss,
-            limit=None if loss.value is None else 100 * loss.value,
-            unit="%",
-            source=f"share of the time in {loss.source}",
-            recalled=loss.recalled,
-        ),
+        _row(s, "std", limit=DEVIATION_SHARE * s.mean, source=share),
+        _row(s, "statistical_min", relation="above", limit=0.0, source=above_0, start=s.mean),
+        _row(s, "statistical_max", **largest),
+        _row(s, "max", **largest),
+        _row(s, "long_contact_loss", **long_losses),
     ]
 
 
 def _uplift(figures: KeyFigures) -> list[Criterion]:
-    """The tightest support of the evaluated spans; those whose room is not known make a row of their own."""
+    """The tightest support of the evaluated spans; those of unknown clearance make a row of their own."""
     uplift, supports = figures.uplift, figures.catenary.supports
     arms = {n: supports[n - 1].steady_arm for n in uplift}
-    rooms = {n: arm.uplift_room for n, arm in arms.items() if arm and arm.uplift_room is not None}
-    unknown = [n for n in uplift if n not in rooms]
+    clearances = {n: arm.uplift_room for n, arm in arms.items() if arm and arm.uplift_room is not None}
+    unknown = [n for n in uplift if n not in clearances]
     rows = []
-    if rooms:
-        tightest = max(rooms, key=lambda n: UPLIFT_FACTOR * uplift[n] - rooms[n])
+    if clearances:
+        tightest = max(clearances, key=lambda n: UPLIFT_FACTOR * uplift[n] - clearances[n])
         source = f"room for {UPLIFT_FACTOR:g} times the uplift (recalled), support {tightest}"
-        rows.append(_uplift_row(uplift[tightest], 1e3 * rooms[tightest], source))
+        rows.append(_uplift_row(uplift[tightest], 1e3 * clearances[tightest], source))
     if unknown:
         source = f"no uplift_room given, support {', '.join(map(str, unknown))}"
         rows.append(_uplift_row(max(uplift[i] for i in unknown), None, source))
     return rows
 
 
-def _uplift_row(uplift: float, room: float | None, source: str) -> Criterion:
+def _uplift_row(uplift: float, clearance: float | None, source: str) -> Criterion:
     return Criterion(
         name="twice the uplift at steady arms",
         value=1e3 * UPLIFT_FACTOR * uplift,
-        limit=room,
+        limit=clearance,
         unit="mm",
         source=source,
-        recalled=room is not None,
+        recalled=clearance is not None,
     )
 
 

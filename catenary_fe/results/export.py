@@ -1,16 +1,18 @@
-"""Histories of a run as tables, for spreadsheets and other programs."""
+"""Tables as CSV, and the histories of a run as such tables, for spreadsheets and other programs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
-from catenary_fe.results.csv_files import OF_HISTORIES, write_csv
-from catenary_fe.results.files import atomic_write, cannot_be_written
+from catenary_fe.results.files import STRAY, atomic_write, cannot_be_written
+from catenary_fe.results.quantities import DECIMALS, OF_HISTORIES, decimals_of
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 
@@ -60,7 +62,7 @@ def _metres(x: float) -> str:
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> list[Path]:
-    """Write each table as a CSV file of its name, at every so many times; returns the files.
+    """Write each table as a CSV file of its name, at every n-th time; returns the files.
 
     Raises InputError for a folder that cannot be written or a number of times below 1.
     """
@@ -78,3 +80,28 @@ def write_tables(tables: Mapping[str, Table], folder: Path, every: int = 1) -> l
     except OSError as error:
         raise InputError(cannot_be_written(folder, error)) from None
     return written
+
+
+def common_name(column: str) -> str:
+    """A column's name without the number of its contact wire."""
+    return column.replace("_1_", "_").replace("_2_", "_")
+
+
+def cell(value: Any, decimals: int | None) -> Any:
+    """A value as it is written to CSV; anything but a decimal number stays as it is."""
+    if not isinstance(value, float | np.floating):
+        return value
+    if decimals is None:
+        return f"{value:.10g}"
+    return f"{round(float(value), decimals) + 0.0:.{decimals}f}"  # never -0.00
+
+
+def write_csv(
+    path: Path, columns: Sequence[str], rows: Iterable[Sequence[Any]], decimals: Mapping[str, int] = DECIMALS
+) -> None:
+    """Write rows under named columns, a column's unit being the end of its name."""
+    digits = [decimals_of(name, decimals) for name in columns]
+    with path.open("w", newline="", encoding="utf-8", errors=STRAY) as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows([cell(value, n) for value, n in zip(row, digits, strict=True)] for row in rows)

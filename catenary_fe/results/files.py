@@ -1,21 +1,30 @@
-"""Files that are whole or not there, written aside and renamed; folders that one process at a time writes."""
+"""Files that are whole or not there, folders with one writer at a time, checksums of what is stored."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import socket
 import stat
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from errno import EACCES, EAGAIN, EDEADLK, EDQUOT, EFBIG, EISDIR, ENOSPC
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from catenary_fe.layout import InputError
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 ASIDE = ".part-"  # begins the names of what is not whole yet
 LOCK = ".lock"
+ATTRIBUTE = "content_sha256"  # where a stored dataset keeps its checksum
 STRAY = "backslashreplace"  # for what is no text in a file's name, which a text may hold: JSON's own escapes
 _FULL = ENOSPC, EDQUOT, EFBIG
 _TAKEN = EACCES, EAGAIN, EDEADLK
@@ -65,13 +74,13 @@ def replace_all(source: Path, target: Path) -> None:
 
 
 def settle(file: Path) -> None:
-    """Bring a file from memory to the disk: after a power cut, too, its name means that it is whole."""
+    """Flush a file to the disk, so that it is whole even after a power cut."""
     with file.open("rb+") as opened:
         os.fsync(opened.fileno())
 
 
 def own_temporary_folder() -> str | None:
-    """A folder among the temporary files in which only this user writes, or None where none can be had.
+    """A temporary folder that only this user can write to, or None where there is none.
 
     Others may make what has its name before us: a folder that is not ours alone is not taken.
     """
@@ -97,7 +106,7 @@ def cannot_be_written(path: str | Path, error: OSError) -> str:
 def locked(folder: Path) -> Iterator[None]:
     """Keep other processes from writing into an existing folder meanwhile.
 
-    The lock is the system's own: it ends with its process, however that ends. On file systems that know no
+    The lock is the system's own: it ends with its process, however that ends. On file systems without
     locks there is none. Raises InputError, with the other's process number, where the folder is taken.
     """
     path = folder / LOCK
@@ -162,3 +171,26 @@ def _owner(path: Path) -> str:
     except (OSError, ValueError):
         return "another process"
     return f"process {number}" + (f" on {machine}" if machine != socket.gethostname() else "")
+
+
+def checksum(data: xr.Dataset) -> str:
+    """SHA-256 of all values, names, dimensions and attributes, but for one that holds a checksum."""
+    found = hashlib.sha256()
+    for name in sorted(map(str, data.variables)):
+        variable = data[name]
+        found.update(repr((name, variable.dims, variable.shape)).encode())
+        found.update(_attributes(variable.attrs))
+        values = np.asarray(variable.values)
+        if values.dtype.kind == "f":
+            found.update(np.ascontiguousarray(values, dtype=f"<f{values.dtype.itemsize}").data)
+        elif values.dtype.kind in "iu":  # netCDF's classic format has widths of its own
+            found.update(np.ascontiguousarray(values, dtype="<i8").data)
+        else:
+            found.update(json.dumps([str(v) for v in values.ravel()]).encode())
+    found.update(_attributes({k: v for k, v in data.attrs.items() if k != ATTRIBUTE}))
+    return found.hexdigest()
+
+
+def _attributes(attributes: Mapping[Any, Any]) -> bytes:
+    texts = {str(k): v if isinstance(v, str) else repr(np.asarray(v).tolist()) for k, v in attributes.items()}
+    return json.dumps(texts, sort_keys=True).encode()

@@ -1,4 +1,4 @@
-"""Eigenfrequencies and shapes of a line, and what kind of motion each of them is."""
+"""Eigenfrequencies and shapes of a line, what kind of motion each of them is, and a run as a sum of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.layout import Catenary, InputError, counted
-from catenary_fe.layout.arguments import number, on_the_wire
+from catenary_fe.layout.arguments import checked, number, numbers, on_the_wire, one_of, whole
 from catenary_fe.layout.frozen import changed_by_copy
 from catenary_fe.layout.parameters import shorten
 
@@ -56,7 +56,7 @@ class ModeKind:
 @changed_by_copy
 @dataclass(frozen=True)
 class WireShapes:
-    """Shapes of one wire, vertical if not said otherwise, mass-normalised over the whole line.
+    """Shapes of one wire, vertical unless stated otherwise, mass-normalised over the whole line.
 
     x : [m], shape (nodes,)
     values : [1/√kg], shape (modes, nodes)
@@ -137,12 +137,12 @@ class Modes:
         if self.along[mode] + self.sideways[mode] > 0.5:
             return ModeKind("neither", "along" if self.along[mode] > self.sideways[mode] else "sideways", 0)
         symmetry = self._symmetry(mode)
-        whole, bays = 0.0, np.zeros(_SHAPES)
+        moving, bays = 0.0, np.zeros(_SHAPES)
         for wire, x, shape in self._bay_samples(mode):
             of_clamps, of_bays = _bay_energies(x, shape)
-            whole += wire * of_clamps
+            moving += wire * of_clamps
             bays += wire * of_bays
-        if whole > bays.sum():
+        if moving > bays.sum():
             return ModeKind(symmetry, "whole line", self._half_waves(mode))
         return ModeKind(symmetry, "bays", int(bays.argmax()) + 1)
 
@@ -165,7 +165,7 @@ class Modes:
         ]
 
     def count_by_kind(self) -> Counter[str]:
-        """How many modes swing how: 'whole line', 'bays 1' …, 'along', 'sideways'."""
+        """Number of modes of each kind: 'whole line', 'bays 1' …, 'along', 'sideways'."""
         return Counter(f"bays {k.half_waves}" if k.kind == "bays" else k.kind for k in self.kinds())
 
     def plot(self, mode: int, ax: Axes | None = None) -> Axes:
@@ -225,3 +225,47 @@ def _bay_energies(x: Floats, shape: Floats) -> tuple[float, Floats]:
     sines = np.sin(np.pi * np.outer(n, fraction))
     amplitudes = 2 * (sines @ (shape - chord)) / (x.size - 1)
     return length * (a * a + a * b + b * b) / 3, length * amplitudes**2 / 2
+
+
+@changed_by_copy
+@dataclass(frozen=True)
+class ModalRun:
+    """One pantograph on a line whose response is a sum of a limited number of eigenforms.
+
+    modes : those that were summed
+    time : [s], shape (times,)
+    position : [m], shape (times,), of the pantograph along the track
+    contact_force : [N], shape (times,)
+    wire_height : [m], shape (times,), of the contact wire over the head, above the rail
+    mass_height : [m], shape (masses, times), above the rail; no masses for an elastic pantograph
+    coordinates : [m √kg], shape (times, modes)
+    """
+
+    modes: Modes
+    time: Floats
+    position: Floats
+    contact_force: Floats
+    wire_height: Floats
+    mass_height: Floats
+    coordinates: Floats
+
+    @checked
+    def uplift(self, x: ArrayLike, every: int = 1) -> Floats:
+        """[m], shape (times, points): uplift of the contact wire at positions [m], at every n-th time."""
+        whole("every", every, least=1)
+        uplift: Floats = np.tensordot(self.coordinates[::every], self.modes.contact.at(x), axes=1)
+        return uplift
+
+    @checked
+    def error_against(self, signal: ArrayLike, of: str = "contact_force") -> float:
+        """Root mean square of the difference to a signal of the same times, over the signal's deviation.
+
+        of : "contact_force" or "wire_height"
+
+        Raises InputError for a signal of other times, or one that is constant.
+        """
+        one_of("of", of, ("contact_force", "wire_height"))
+        full = numbers("signal", signal, shape=self.time.shape, each="one value a time")
+        if np.ptp(full) == 0:
+            raise InputError("signal is constant: it has no deviation to compare with")
+        return float(np.sqrt(np.mean((getattr(self, of) - full) ** 2)) / full.std())

@@ -1,7 +1,7 @@
 """Quality checks: what a finished run must satisfy before its numbers are trusted.
 
-Each guard is a named check with value and bound, computed from the run's own histories and inputs, so that it
-is there for every run, loaded ones too. A guard that cannot be judged on a run is left out.
+Each is computed from the run's own histories and inputs, so that every run has it, loaded ones too. A check
+that cannot be judged on a run is left out.
 """
 
 from __future__ import annotations
@@ -74,18 +74,18 @@ def _name(run: Run, pantograph: int) -> str:
 
 
 def _worst(found: Sequence[tuple[float, str]]) -> tuple[float, str]:
-    """The largest value, and what is said of it; what is not a number is the worst of all."""
+    """The largest value and its text; not-a-number counts as the largest."""
     return max(found, key=lambda item: np.inf if np.isnan(item[0]) else item[0])
 
 
 def _down(value: float) -> str:
-    """Two digits of a positive number, rounded down: what is taken for a bound keeps it."""
+    """Two digits of a positive number, rounded down, so that the value suggested meets the bound."""
     unit = 10.0 ** (floor(log10(value)) - 1)
     return f"{floor(value / unit + 1e-9) * unit:.2g}"
 
 
 def _penetration(run: Run) -> Iterator[Check]:
-    """The contact spring stands for a hard contact: 50 kN/m gives by 4 mm under 200 N, by 10 mm under 500 N.
+    """The contact spring stands for a hard contact: at 50 kN/m, 4 mm deep under 200 N, 10 mm under 500 N.
 
     What goes deeper is a spring so soft that it changes the result, or an impact that no head survives.
     """
@@ -220,7 +220,7 @@ def _mesh(run: Run) -> dict[str, float]:
 
 
 def _element_passing(run: Run) -> Iterator[Check]:
-    """A wire gives a little more in an element than at its nodes: passing elements sound a tone.
+    """A wire is a little softer within an element than at its nodes: passing elements sound a tone.
 
     Above the evaluated band it is filtered away. In slow runs it lies inside; of a mesh with several elements
     from dropper to dropper the tone itself is then judged, as part of the filtered force: at 3 % of the mean
@@ -256,7 +256,7 @@ def _element_passing(run: Run) -> Iterator[Check]:
 
 
 def _steps_per_element(run: Run) -> Iterator[Check]:
-    """Each element must see the pantograph."""
+    """The pantograph must not step over whole elements."""
     mesh = _mesh(run)
     if mesh:
         shortest = min(mesh["at_clamps"], mesh["contact_wire_element"])
@@ -283,7 +283,7 @@ def _steps_per_period(run: Run) -> Iterator[Check]:
 
 
 def _end_reflection(run: Run) -> Iterator[Check]:
-    """What runs ahead to the line's end comes back; no real line ends there.
+    """Waves that run ahead are reflected at the end of the model, where no real line ends.
 
     Judged is the motion at the support before the end, early enough to be back at a pantograph, at the speed
     of the faster wire, before that leaves the evaluated spans. Supports and droppers hold most waves back: a

@@ -15,15 +15,19 @@ from numpy.typing import NDArray
 from catenary_fe.layout import AnyPantograph, Catenary, InputError, recorded_pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
 from catenary_fe.layout.frozen import changed_by_copy
-from catenary_fe.results.check import FAILED, Check
-from catenary_fe.results.checksum import ATTRIBUTE, checksum
-from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.files import atomic_write
-from catenary_fe.results.partial import Partial
+from catenary_fe.results.check import FAILED, Check, Partial
+from catenary_fe.results.files import ATTRIBUTE, atomic_write, checksum
 from catenary_fe.results.quality import run_checks
+from catenary_fe.results.quantities import (
+    CHECKS_FAILED,
+    DROPPER_FORCE,
+    NON_UNIFORMITY,
+    SLACK_DROPPERS,
+    UPLIFT,
+)
 from catenary_fe.results.signal import FilterKind, low_pass
 from catenary_fe.results.statistics import ForceStatistics, force_statistics, governing
-from catenary_fe.results.wires import WireHistory, wire_histories
+from catenary_fe.results.wires import Elasticity, WireHistory, wire_histories
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +40,7 @@ FORMAT = "catenary_fe run 2"
 @changed_by_copy
 @dataclass(frozen=True)
 class Run:
-    """Histories of a run, as an xarray Dataset with units, and what they came from.
+    """Histories of a run, as an xarray Dataset with units, and the inputs they were computed from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
         dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
@@ -123,7 +127,7 @@ class Run:
 
     @property
     def elasticity(self) -> Elasticity | None:
-        """The line's elasticity as it was computed for this run, see :meth:`with_elasticity`; None: never."""
+        """The line's elasticity, where it was computed, see :meth:`with_elasticity`; else None."""
         if "elasticity_uplift" not in self.data:
             return None
         uplift, x = self.data["elasticity_uplift"], np.asarray(self.data["elasticity_position"].values)
@@ -132,7 +136,7 @@ class Run:
         return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), inside)
 
     def with_elasticity(self, curve: Elasticity) -> Run:
-        """The run with the line's elasticity in its data: who shows or judges it reads it there."""
+        """The run with the line's elasticity added to its data, where report and criteria read it."""
         words = {"units": "m", "long_name": "uplift of the contact wire under a static force"}
         place = ("elasticity_position", curve.position, {"units": "m", "long_name": "place of that force"})
         variable = ("elasticity_position", curve.uplift, words | {"force": curve.force})
@@ -276,16 +280,16 @@ class Run:
                 for s, name in zip(figures, names, strict=True)
             ],
             "governing_pantograph": governing(self.figures(filter)),
-            "max_support_uplift_mm": 1e3 * self.largest_support_uplift() if self.reached else None,
-            "support_uplift_mm": {str(n): 1e3 * z for n, z in uplift.items()},
-            "slack_droppers": self.slackened_droppers.size,
-            "largest_dropper_force_N": self.largest_dropper_force,
-            "elasticity_non_uniformity_percent": 100 * curve.non_uniformity if curve else None,
+            UPLIFT.key: UPLIFT.shown(self.largest_support_uplift()) if self.reached else None,
+            "support_uplift_mm": {str(n): UPLIFT.shown(z) for n, z in uplift.items()},
+            SLACK_DROPPERS.key: self.slackened_droppers.size,
+            DROPPER_FORCE.key: self.largest_dropper_force,
+            NON_UNIFORMITY.key: NON_UNIFORMITY.shown(curve.non_uniformity) if curve else None,
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s if self.wall_s else None,
             "checks": [check.as_dict() for check in self.checks],
-            "checks_failed": list(self.failed_checks),
+            CHECKS_FAILED.key: list(self.failed_checks),
             "warnings": list(self.warnings),
         }
 

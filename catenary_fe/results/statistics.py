@@ -10,27 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.results.quantities import FORCE
 from catenary_fe.results.signal import FilterKind, band_pass, low_pass
 
 Floats = NDArray[np.float64]
 LONG_LOSS = 5e-3  # [s] shorter losses make no arc that EN 50317 counts (recalled)
-
-
-_SHOWN: dict[str, tuple[str, int]] = {  # names in display units, with what they are multiplied by
-    "mean_N": ("mean", 1),
-    "std_N": ("std", 1),
-    "std_0_5_Hz_N": ("std_0_5", 1),
-    "std_5_20_Hz_N": ("std_5_20", 1),
-    "statistical_max_N": ("statistical_max", 1),
-    "statistical_min_N": ("statistical_min", 1),
-    "max_N": ("max", 1),
-    "min_N": ("min", 1),
-    "contact_loss_percent": ("contact_loss", 100),
-    "contact_loss_over_5_ms_percent": ("long_contact_loss", 100),
-    "losses_over_5_ms": ("long_losses", 1),
-    "longest_loss_ms": ("longest_loss", 1000),
-    "contact_point_range_mm": ("contact_point_range", 1000),
-}
 
 
 @changed_by_copy
@@ -68,30 +52,27 @@ class ForceStatistics:
 
     def as_dict(self) -> dict[str, float | str]:
         """In display units, ready for JSON."""
-        values = {name: factor * getattr(self, own) for name, (own, factor) in _SHOWN.items()}
-        return {"name": self.pantograph} | values
+        return {"name": self.pantograph} | {q.key: q.shown(getattr(self, own)) for own, q in FORCE.items()}
 
     @classmethod
     def from_dict(cls, record: Mapping[str, Any], filter: FilterKind) -> ForceStatistics:
-        """What :meth:`as_dict` gave, other entries left out; ``filter``: which low-pass was used."""
-        values: dict[str, Any] = {
-            own: record[name] if factor == 1 else record[name] / factor
-            for name, (own, factor) in _SHOWN.items()
-        }
+        """What :meth:`as_dict` returned, other entries left out; ``filter``: which low-pass was used."""
+        values: dict[str, Any] = {own: q.si(record[q.key]) for own, q in FORCE.items()}
         return cls(pantograph=record["name"], filter=filter, **values)
 
     @classmethod
     def none_as_dict(cls, pantograph: str) -> dict[str, float | str | None]:
-        """As :meth:`as_dict`, with nothing in it: of spans that were not passed."""
-        return {"name": pantograph, **dict.fromkeys(_SHOWN)}
+        """As :meth:`as_dict`, all None: of spans that were not passed."""
+        return {"name": pantograph, **{q.key: None for q in FORCE.values()}}
 
     def __str__(self) -> str:
+        said = {own: q.text(self) for own, q in FORCE.items()}
         return (
-            f"{self.pantograph}: mean {self.mean:.1f} N, standard deviation {self.std:.1f} N, "
-            f"statistical maximum {self.statistical_max:.1f} N and minimum {self.statistical_min:.1f} N, "
-            f"actual maximum {self.max:.1f} N and minimum {self.min:.1f} N, "
-            f"contact loss {100 * self.contact_loss:.2f} %, {100 * self.long_contact_loss:.2f} % in"
-            f" {self.long_losses} losses longer than 5 ms, the longest {1e3 * self.longest_loss:g} ms"
+            f"{self.pantograph}: mean {said['mean']}, standard deviation {said['std']}, "
+            f"statistical maximum {said['statistical_max']} and minimum {said['statistical_min']}, "
+            f"actual maximum {said['max']} and minimum {said['min']}, contact loss {said['contact_loss']}, "
+            f"{said['long_contact_loss']} in {self.long_losses} losses longer than 5 ms, the longest "
+            f"{said['longest_loss']}"
         )
 
 
@@ -134,7 +115,7 @@ def force_statistics(
 def governing(
     figures: Sequence[ForceStatistics | None], excess: Mapping[str, float] | None = None
 ) -> str | None:
-    """Name of the pantograph whose figures decide on the line; None where there are no figures.
+    """Name of the governing pantograph; None where there are no figures.
 
     excess : by name, how many times its limit the criterion is that a pantograph misses by most
 

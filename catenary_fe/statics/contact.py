@@ -49,6 +49,8 @@ class _StaticContact:
         from scipy.sparse import csr_matrix, lil_matrix
 
         self.system, self.pantographs = system, pantographs
+        patterns, signals = system.load(np.zeros(1))
+        self.varying: Floats = signals[:, 0] @ patterns  # as a run begins
         self.contacts = contacts_of(pantographs, len(system.contact_paths))
         bodies = [p.body for p in pantographs]
         self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])
@@ -99,7 +101,7 @@ class _StaticContact:
 
     def residual(self, x: Floats) -> Floats:
         n = self.system.size
-        line = self.system.gather(self.system.out_of_balance(self.line_part(x)))
+        line = self.system.gather(self.system.out_of_balance(self.line_part(x))) + self.varying
         own = self.load - self.K @ x[n:]
         residual: Floats = np.concatenate([line, own]) - self.rows.T @ self.forces(x)
         return residual
@@ -113,7 +115,8 @@ class _StaticContact:
     def energy(self, x: Floats) -> float:
         y = x[self.system.size :]
         own = float(y @ (self.K @ y) / 2 - self.load @ y)
-        return self.system.energy(self.line_part(x)) + own + float(self._of_laws("energy", x).sum())
+        own += float(self._of_laws("energy", x).sum() - self.varying @ x[: self.system.size])
+        return self.system.energy(self.line_part(x)) + own
 
     def placed(self, x: Floats) -> list[PlacedPantograph]:
         forces, heights = self.forces(x), self.rest - self.rows[:, : self.system.size] @ x[: self.system.size]

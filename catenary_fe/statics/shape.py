@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -91,6 +92,16 @@ class Shape:
     def system(self) -> System:
         """The assembled line, from which every engine starts."""
         return assemble(self.catenary, self.mesh, self.installation)
+
+    def with_effect(self, effect: Callable[[System], System]) -> Shape:
+        """The same line with something more in its system: a spring, a load, other properties of an element.
+
+        Statics, modes and runs of every engine see it. The shape itself stays as it was installed: what the
+        effect does to the line at rest, they find by themselves.
+        """
+        changed = replace(self)
+        changed.__dict__["system"] = effect(self.system)
+        return changed
 
     @property
     def contact_wires(self) -> tuple[HangingWire, ...]:

@@ -1,9 +1,10 @@
-"""A film of a run: wires, droppers and pantographs over the contact force, as GIF or MP4."""
+"""What moves in a run, frame by frame, and a film of it as GIF or MP4."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,30 +15,112 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
 from catenary_fe.layout.arguments import checked, number, span_numbers, whole
-from catenary_fe.results import Run
+from catenary_fe.results import Run, WireHistory
 from catenary_fe.results.files import atomic_write
-from catenary_fe.views.scene import Scene, scene
-from catenary_fe.views.style import (
-    DROPPER,
-    PANTOGRAPHS,
-    SLACK,
-    SUPPORT,
-    WIRES,
-    Picture,
-    finish,
-    mark_supports,
-    note_failed,
-    styled,
-    wire_colour,
-)
+from catenary_fe.views import style
 
 Floats = NDArray[np.float64]
 _SIZE, _DPI = (10.0, 5.4), 96  # [in], dots per inch: even numbers of pixels, which MP4 needs
+MASS_GAP = 0.3  # [m] drawn between a pantograph's masses
 _BASE = 0.3  # [m] of room below the lowest and above the highest thing drawn
 
 
+@dataclass(frozen=True)
+class Scene:
+    """Wires, droppers and pantographs at the times of the frames.
+
+    time : [s], shape (frames,)
+    wires : with their shapes at these times; contact wires first
+    dropper_x : [m], shape (droppers,)
+    dropper_ends : numbers in ``wires`` of each dropper's lower and upper wire, shape (droppers, 2)
+    dropper_slack : shape (frames, droppers)
+    support_x : [m], shape (supports,)
+    pantograph_x : [m], shape (pantographs, frames)
+    rest : [m], shape (pantographs, frames), static height of the contact wire at each pantograph
+    masses : for each pantograph [m] shape (masses, frames), motion above ``rest`` since the run's start
+    force : [N], shape (pantographs, frames), low-passed at 20 Hz
+    """
+
+    time: Floats
+    wires: tuple[WireHistory, ...]
+    dropper_x: Floats
+    dropper_ends: NDArray[np.int64]
+    dropper_slack: NDArray[np.bool_]
+    support_x: Floats
+    pantograph_x: Floats
+    rest: Floats
+    masses: tuple[Floats, ...]
+    force: Floats
+
+    def heights(self, wire: int, frame: int, magnified: float = 1.0) -> Floats:
+        """[m], shape (points,), of a wire, its motion magnified about the static shape."""
+        history = self.wires[wire]
+        heights: Floats = history.static + magnified * history.uplift[frame]
+        return heights
+
+    def mass_heights(self, pantograph: int, magnified: float = 1.0) -> Floats:
+        """[m], shape (masses, frames), that masses are drawn at: below the wire at rest, motion magnified."""
+        motion = self.masses[pantograph]
+        below = MASS_GAP * np.arange(len(motion))[:, None]
+        heights: Floats = self.rest[pantograph] - below + magnified * motion
+        return heights
+
+    def extent(self, start: float, end: float, magnified: float = 1.0) -> tuple[float, float]:
+        """[m] lowest and highest of what is drawn between two positions [m] along the line, in all frames."""
+        heights = []
+        for wire in self.wires:
+            shown = (wire.x >= start) & (wire.x <= end)
+            heights.append((wire.static + magnified * wire.uplift)[:, shown].ravel())
+        for i, x in enumerate(self.pantograph_x):
+            seen = (x >= start) & (x <= end)
+            heights += [self.rest[i, seen], self.mass_heights(i, magnified)[:, seen].ravel()]
+        drawn = np.concatenate(heights)
+        return float(np.nanmin(drawn)), float(np.nanmax(drawn))
+
+
+def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> Scene:
+    """The scene of a run at some of its stored wire shapes (numbers from 0); unset: at all of them.
+
+    Raises InputError where the run stored no wire shapes.
+    """
+    wires = run.wires()
+    chosen = np.arange(wires[0].time.size) if frames is None else np.asarray(frames)
+    at = np.searchsorted(run.time, wires[0].time[chosen] - 0.5 * run.step)
+    data = run.data
+    dropper_x = np.asarray(data["dropper_position"].values)
+    hung = run.catenary.dropper_contact_wires
+    positions, masses = np.asarray(data["position"].values), data["mass_height"].values
+    rest = np.interp(positions, wires[0].x, wires[0].static)
+    moved = (masses - masses[:, :, :1] - (rest - rest[:, :1])[:, None, :])[:, :, at]
+    return Scene(
+        time=wires[0].time[chosen],
+        wires=tuple(
+            WireHistory(wire.name, wire.x, wire.static, wire.height[chosen], wire.time[chosen])
+            for wire in wires
+        ),
+        dropper_x=dropper_x,
+        dropper_ends=np.array(
+            [_ends(wires, x, int(n)) for x, n in zip(dropper_x, hung, strict=True)], dtype=np.int64
+        ).reshape(-1, 2),
+        dropper_slack=np.asarray(data["dropper_force"].values[:, at] <= 0).T,
+        support_x=np.asarray(data["support_position"].values),
+        pantograph_x=positions[:, at],
+        rest=rest[:, at],
+        masses=tuple(m[np.isfinite(m[:, 0])] for m in moved),
+        force=run.filtered_contact_force()[:, at],
+    )
+
+
+def _ends(wires: Sequence[WireHistory], x: float, number: int) -> tuple[int, int]:
+    """The contact wire (of this number, from 0) at a dropper, and the lowest other wire above it there."""
+    heights = [float(np.interp(x, w.x, w.static, left=np.nan, right=np.nan)) for w in wires]
+    lower = [i for i, wire in enumerate(wires) if wire.touched][number]
+    above = [i for i, wire in enumerate(wires) if not wire.touched and np.isfinite(heights[i])]
+    return lower, min(above, key=lambda i: heights[i], default=lower)
+
+
 @checked
-@styled
+@style.styled
 def film(
     run: Run,
     path: str | Path,
@@ -90,11 +173,11 @@ class _View:
             raise InputError(f"no pantograph was ever inside spans {list(spans)}")
         self.begin, self.stop = float(run.time[seen][0]), float(run.time[seen][-1])
         self.magnified, self._run = magnified, run
-        self.figure = Picture(figsize=_SIZE, dpi=_DPI, layout="constrained")
+        self.figure = style.Picture(figsize=_SIZE, dpi=_DPI, layout="constrained")
         self._canvas: Any = FigureCanvasAgg(self.figure)
         self._wires: Axes
         self._wires, self._force = self.figure.subplots(2, 1, height_ratios=(3, 2), sharex=True)
-        self._title = f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h, {slowed:g} times slower"
+        self._title = style.run_title(run, f", {slowed:g} times slower")
 
     def pictures(self, scene: Scene, progress: Callable[[float], None] | None) -> Iterator[NDArray[np.uint8]]:
         """Shape (height, width, 3), frame by frame."""
@@ -115,34 +198,29 @@ class _View:
         ax, supports = self._wires, scene.support_x
         low, high = scene.extent(self.start, self.end, self.magnified)
         low, high = low - _BASE, high + 0.12 * (high - low) + _BASE
-        mark_supports(ax, supports, label=False)
-        mark_supports(self._force, supports, label=False)
+        style.mark_supports(ax, supports, label=False)
+        style.mark_supports(self._force, supports, label=False)
         ax.set_xlim(self.start, self.end)
         ax.set_ylim(low, high)
         width, height = _SIZE[0] * 0.9 / (self.end - self.start), _SIZE[1] * 0.5 / (high - low)
-        note_failed(finish(ax, "", "height above rail (m)", self._title), self._run.failed_checks)
+        style.note_failed(style.finish(ax, "", "height above rail (m)", self._title), self._run.failed_checks)
         note = f"heights about {height / width:.0f}, motion another {self.magnified:g} times exaggerated"
-        ax.text(0.995, 1.02, note, transform=ax.transAxes, ha="right", fontsize=8, color=SUPPORT)
+        ax.text(0.995, 1.02, note, transform=ax.transAxes, ha="right", fontsize=8, color=style.SUPPORT)
         self._draw_force()
         options: dict[str, Any] = {"animated": True}
-        colours = [wire_colour(wire.name) for wire in scene.wires]
+        colours = [style.wire_colour(wire.name) for wire in scene.wires]
         wires = [ax.plot([], [], color=colour, linewidth=1.5, **options)[0] for colour in colours]
-        for kind in WIRES:
-            if wire_colour(kind) in colours:
-                ax.plot([], [], color=wire_colour(kind), linewidth=1.5, label=kind)
-        taut = ax.plot([], [], color=DROPPER, linewidth=0.9, **options)[0]
-        slack = ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", **options)[0]
-        ax.plot([], [], color=SLACK, linewidth=1.8, linestyle=":", label="slack dropper")
+        for kind in style.WIRES:
+            if style.wire_colour(kind) in colours:
+                ax.plot([], [], color=style.wire_colour(kind), linewidth=1.5, label=kind)
+        taut = ax.plot([], [], color=style.DROPPER, linewidth=0.9, **options)[0]
+        slack = ax.plot([], [], color=style.SLACK, linewidth=1.8, linestyle=":", **options)[0]
+        ax.plot([], [], color=style.SLACK, linewidth=1.8, linestyle=":", label="slack dropper")
         ax.legend(loc="upper left", fontsize=8, frameon=False, ncols=4)
         clock = ax.text(0.995, 0.93, "", transform=ax.transAxes, ha="right", fontsize=9, **options)
-        heads = [
-            ax.plot([], [], color=PANTOGRAPHS[i % len(PANTOGRAPHS)], marker="s", markersize=7, **options)[0]
-            for i in range(len(scene.masses))
-        ]
-        points = [
-            self._force.plot([], [], "o", color=PANTOGRAPHS[i % len(PANTOGRAPHS)], markersize=7, **options)[0]
-            for i in range(len(scene.masses))
-        ]
+        of_each = [style.pantograph_colour(i) for i in range(len(scene.masses))]
+        heads = [ax.plot([], [], "s-", color=c, markersize=7, **options)[0] for c in of_each]
+        points = [self._force.plot([], [], "o", color=c, markersize=7, **options)[0] for c in of_each]
         everything = [taut, slack, *wires, *heads, *points, clock]
         return {"wires": wires, "taut": taut, "slack": slack, "heads": heads, "points": points,
                 "clock": clock, "all": everything}  # fmt: skip
@@ -153,12 +231,12 @@ class _View:
         top = 0.0
         for i, force in enumerate(run.filtered_contact_force()):
             inside = (positions[i] >= self.start) & (positions[i] <= self.end)
-            colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
+            colour = style.pantograph_colour(i)
             ax.plot(positions[i][inside], force[inside], color=colour, linewidth=1.0, label=str(names[i]))
             top = max(top, float(force[inside].max(initial=0.0)))
         ax.set_ylim(0, 1.25 * top or 1.0)
         ax.legend(loc="upper left", fontsize=8, frameon=False, ncols=2)
-        finish(ax, "position along the line (m)", "contact force\n0 to 20 Hz (N)", "")
+        style.finish(ax, style.ALONG, "contact force\n0 to 20 Hz (N)", "")
 
     def _move(self, moving: dict[str, Any], scene: Scene, frame: int) -> None:
         heights = [scene.heights(i, frame, self.magnified) for i in range(len(scene.wires))]
@@ -188,19 +266,6 @@ class _View:
             moving[name].set_data(
                 np.column_stack([x, x, gap]).ravel(), np.column_stack([z[:, 0], z[:, 1], gap]).ravel()
             )
-
-
-def save_pixels(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Save one picture, shape (height, width, 3). Raises InputError where that cannot be."""
-    from PIL import Image
-
-    try:
-        with atomic_write(path) as aside:
-            Image.fromarray(pixels).save(aside)
-    except InputError:
-        raise
-    except ValueError as error:  # an unknown format
-        raise InputError(f"{path}: {error}") from None
 
 
 def _write_gif(path: Path, pictures: Iterator[NDArray[np.uint8]], rate: int) -> None:

@@ -1,25 +1,25 @@
-"""Picture of a catenary's layout with its dimensions."""
+"""Pictures of a layout: from the side with its dimensions, from above with stagger and curves."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Sequence
+from itertools import groupby, pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.layout import Catenary
-from catenary_fe.layout.arguments import checked
+from catenary_fe.layout import AnyPantograph, Catenary, Panhead
+from catenary_fe.layout.arguments import checked, number
 from catenary_fe.statics import Shape
-from catenary_fe.views.lines import Line, draw_lines, hanging_lines, sketched_lines, upper_wires
-from catenary_fe.views.stretch import Stretch, draw_line, evaluated_pair, mark_evaluated
-from catenary_fe.views.style import DROPPER, SUPPORT, finish, label_row, styled
+from catenary_fe.views import stretch, style
 
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
+_CURVE = "#7b4fa3"
+_HEAD = "#dfe7ec"
 
 
 @checked
-@styled
+@style.styled
 def plot_layout(
     catenary: Catenary,
     shape: Shape | None = None,
@@ -38,27 +38,25 @@ def plot_layout(
     Raises InputError for spans that the line does not have.
     """
 
-    def draw(ax: Axes, part: Stretch) -> None:
+    def draw(ax: Axes, part: stretch.Stretch) -> None:
         _draw(ax, part, shape, to_scale)
 
     if to_scale and not spans:
-        spans = evaluated_pair(catenary).spans
-    return draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
+        spans = stretch.evaluated_pair(catenary).spans
+    return stretch.draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
 
 
-def _draw(ax: Axes, part: Stretch, shape: Shape | None, to_scale: bool) -> None:
+def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) -> None:
     catenary = part.catenary
-    lines = hanging_lines(shape, part) if shape else sketched_lines(catenary, part)
+    lines = stretch.hanging_lines(shape, part) if shape else stretch.sketched_lines(catenary, part)
     contact = [line for line in lines if line.name == "contact wire"]
     low = min(float(line.z.min()) for line in contact) - _BELOW
     top = float(catenary.messenger_support_heights[part.supports].max())
     high = top + (0.1 if to_scale else 0.32) * (top - low)
     ax.set_ylim(low, high)
-    room = part.end - part.start
-    ax.set_xlim(part.start - 0.02 * room, part.end + 0.02 * room)
-    mark_evaluated(ax, part)
-    draw_lines(ax, lines, "z")
-    _draw_droppers(ax, part, lines, upper_wires(catenary, shape))
+    stretch.frame(ax, part)
+    stretch.draw_lines(ax, lines, "z")
+    _draw_droppers(ax, part, lines, stretch.upper_wires(catenary, shape))
     _draw_supports(ax, part, lines, low)
     scale = "to scale"
     if to_scale:
@@ -66,65 +64,49 @@ def _draw(ax: Axes, part: Stretch, shape: Shape | None, to_scale: bool) -> None:
     else:
         _draw_dimensions(ax, part, lines, low)
         box = ax.get_window_extent()
-        exaggeration = box.height / (high - low) / (box.width / (1.04 * room))
+        exaggeration = box.height / (high - low) / (box.width / (1.04 * (part.end - part.start)))
         scale = f"heights about {exaggeration:.0f} times exaggerated"
-    where = "" if len(part.spans) == len(catenary.spans) else f", {part}"
-    finish(
-        ax, "position along the line (m)", "height above rail (m)", f"{catenary.name}: layout{where}, {scale}"
-    )
+    style.finish(ax, style.ALONG, "height above rail (m)", f"{catenary.name}: layout{part.where}, {scale}")
 
 
-def _draw_droppers(ax: Axes, part: Stretch, lines: list[Line], upper: np.ndarray) -> None:
+def _draw_droppers(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], upper: np.ndarray) -> None:
     catenary = part.catenary
     shown = np.flatnonzero(part.inside(catenary.dropper_positions))
     x = catenary.dropper_positions[shown]
     below = [lines[catenary.dropper_contact_wires[i]].height(catenary.dropper_positions[i]) for i in shown]
     above = [lines[upper[i]].height(catenary.dropper_positions[i]) for i in shown]
-    ax.vlines(x, below, above, color=DROPPER, linewidth=0.9 if part.is_close else 0.6, label="dropper")
+    ax.vlines(x, below, above, color=style.DROPPER, linewidth=0.9 if part.is_close else 0.6, label="dropper")
 
 
-def _draw_supports(ax: Axes, part: Stretch, lines: list[Line], low: float) -> None:
+def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     """A line up to each messenger wire's support with the support's number, and the steady arms."""
     catenary, x = part.catenary, part.support_x
     tops = catenary.messenger_support_heights[part.supports]
     wire = lines[0].height(x)
-    ax.vlines(x, low, tops, color=SUPPORT, linewidth=0.8, linestyle=":")
-    ax.plot(x, tops, "v", color=SUPPORT, markersize=7 if part.is_close else 4, label="support")
-    arms = [
-        n
-        for n, i in enumerate(part.supports)
-        if catenary.supports[i].steady_arm and 0 < i < len(catenary.spans)
-    ]
+    ax.vlines(x, low, tops, color=style.SUPPORT, linewidth=0.8, linestyle=":")
+    ax.plot(x, tops, "v", color=style.SUPPORT, markersize=7 if part.is_close else 4, label="support")
+    inner = range(1, len(catenary.spans))
+    arms = [n for n, i in enumerate(part.supports) if i in inner and catenary.supports[i].steady_arm]
     if arms:
-        ax.plot(
-            x[arms],
-            wire[arms],
-            "o",
-            color=SUPPORT,
-            markersize=5 if part.is_close else 3,
-            fillstyle="none",
-            label="steady arm",
-        )
-    label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
+        at, size = (x[arms], wire[arms]), 5 if part.is_close else 3
+        ax.plot(*at, "o", color=style.SUPPORT, markersize=size, fillstyle="none", label="steady arm")
+    style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
 
 
-def _draw_dimensions(ax: Axes, part: Stretch, lines: list[Line], low: float) -> None:
+def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     x, spans = part.support_x, [part.catenary.spans[n - 1] for n in part.spans]
     middles = (x[:-1] + x[1:]) / 2
     if not part.is_close:
-        label_row(ax, middles, low + 0.2, [f"{span.length:g} m" for span in spans], size=8)
+        style.label_row(ax, middles, low + 0.2, [f"{span.length:g} m" for span in spans], size=8)
         return
-    for number, span, a, b in zip(part.spans, spans, x[:-1], x[1:], strict=True):
-        _dimension(ax, (a, low + 0.2), (b, low + 0.2), f"span {number}: {span.length:g} m")
+    for n, span, a, b in zip(part.spans, spans, x[:-1], x[1:], strict=True):
+        _dimension(ax, (a, low + 0.2), (b, low + 0.2), f"span {n}: {span.length:g} m")
     at = part.catenary.dropper_positions
     stations = np.union1d(x, at[part.inside(at)])
     distances = [f"{round(b - a, 3):g}" for a, b in pairwise(stations)]
-    if label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
-        ax.vlines(stations, low + 0.49, low + 0.59, color=DROPPER, linewidth=0.6)
-    bottom, top = (
-        float(lines[0].height(x[:1])[0]),
-        float(part.catenary.messenger_support_heights[part.first - 1]),
-    )
+    if style.label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
+        ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
+    bottom, top = lines[0].height(x[:1])[0], part.catenary.messenger_support_heights[part.first - 1]
     at = x[0] + 0.006 * (part.end - part.start)
     _dimension(ax, (at, bottom), (at, top), f"system height {round(top - bottom, 3):g} m", vertical=True)
 
@@ -135,6 +117,130 @@ def _dimension(
     ax.annotate("", start, end, arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": "#333333"})
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
     if vertical:
-        ax.annotate(text, middle, (2, 0), textcoords="offset points", va="center", rotation=90, fontsize=8)
+        style.annotate(ax, text, middle, (2, 0), va="center", rotation=90)
     else:
         ax.text(*middle, text, va="center", ha="center", fontsize=8, backgroundcolor="white")
+
+
+@checked
+@style.styled
+def plot_plan(
+    shape: Shape, *, spans: Sequence[int] | None = None, head_width: float = 1.2, ax: Axes | None = None
+) -> Axes:
+    """Draw all wires from above, y to the left of the track's centre, with curves, steady arms, their pull.
+
+    spans : numbers of the spans, from 1; unset: the whole line, and of a long one two spans closer below it
+    head_width : [m] of the panhead's working part, drawn as a band
+
+    Raises InputError for spans that the line does not have.
+    """
+    number("head_width", head_width, "m", above=0.0)
+
+    def draw(ax: Axes, part: stretch.Stretch) -> None:
+        _draw_plan(ax, part, shape, head_width)
+
+    curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if span.curve_radius]
+    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), curved)
+
+
+def head_width(pantographs: Iterable[AnyPantograph]) -> float:
+    """[m] of the working part of the first head that is described; else of the usual one."""
+    heads = (p.head for p in pantographs if p.head)
+    return next(heads, Panhead()).width
+
+
+def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> None:
+    catenary = part.catenary
+    stretch.frame(ax, part)
+    ax.axhspan(-width / 2, width / 2, color=_HEAD, alpha=0.7, zorder=0.5, label=f"panhead, {width:g} m")
+    ax.axhline(0.0, color=style.SUPPORT, linewidth=0.7, linestyle="-.", label="track centre")
+    stretch.draw_lines(ax, stretch.hanging_lines(shape, part), "y")
+    _droppers_from_above(ax, part, shape)
+    _draw_arms(ax, part, shape)
+    style.mark_supports(ax, part.support_x, label=False)
+    low, high = ax.get_ylim()
+    ax.set_ylim(low - 0.25 * (high - low), high + 0.3 * (high - low))
+    above = high + 0.08 * (high - low)
+    style.label_row(ax, part.support_x, above, [str(i + 1) for i in part.supports], size=8, above=1)
+    _draw_curves(ax, part)
+    title = f"{catenary.name}: plan{part.where}, {_curve(part)}; lateral positions much exaggerated"
+    style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
+
+
+def _curves(part: stretch.Stretch) -> list[tuple[float, int, int]]:
+    """Radius, first and last span of each run of spans that curve alike."""
+    groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curve_radius or 0.0)
+    found = [(radius, list(numbers)) for radius, numbers in groups]
+    return [(radius, numbers[0], numbers[-1]) for radius, numbers in found if radius]
+
+
+def _curve(part: stretch.Stretch) -> str:
+    curves = _curves(part)
+    if not curves:
+        return "straight track"
+    if len(curves) > 2:
+        radii = [abs(radius) for radius, _, _ in curves]
+        return f"{len(curves)} curves, radii {min(radii):g} to {max(radii):g} m"
+    said = []
+    for radius, first, last in curves:
+        where = stretch.Stretch(part.catenary, first, last)
+        here = "" if where == part else f", in {where}"
+        said.append(f"curve to the {'left' if radius > 0 else 'right'}, radius {abs(radius):g} m{here}")
+    return " and ".join(said)
+
+
+def _draw_curves(ax: Axes, part: stretch.Stretch) -> None:
+    """A bar along the bottom under each curve."""
+    supports, axes = part.catenary.support_positions, ax.get_xaxis_transform()
+    for i, (radius, first, last) in enumerate(_curves(part)):
+        ends = supports[first - 1], supports[last]
+        ax.plot(ends, (0.1, 0.1), color=_CURVE, linewidth=3.0, solid_capstyle="butt", transform=axes,
+                label=None if i else "curve")  # fmt: skip
+        side = "left" if radius > 0 else "right"
+        if (ends[1] - ends[0]) > 0.08 * (part.end - part.start):
+            text = f"{side}, R {abs(radius):g} m"
+            box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
+            ax.text(
+                sum(ends) / 2, 0.025, text, transform=axes, ha="center", fontsize=8, color=_CURVE, bbox=box
+            )
+
+
+def _droppers_from_above(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
+    mesh = shape.mesh
+    points = np.concatenate([np.column_stack([w.x, w.y]) for w in shape.wires])
+    shown = part.inside(shape.catenary.dropper_positions)
+    ends = points[mesh.nodes(mesh.lower)][shown], points[mesh.nodes(mesh.upper)][shown]
+    gap = np.full(ends[0].shape, np.nan)
+    x, y = np.stack([*ends, gap], axis=1).reshape(-1, 2).T
+    ax.plot(x, y, color=style.DROPPER, linewidth=0.7)
+
+
+def _draw_arms(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
+    """Arms at their length, seen from above, with the lateral force that they take."""
+    forces, catenary = shape.installation.arm_forces, shape.catenary
+    ends: list[tuple[float, float]] = []
+    texts = []
+    for i in part.supports:
+        arm = catenary.supports[i].steady_arm
+        if arm is None or i in (0, len(catenary.spans)):
+            continue
+        for wire, (stations, force) in enumerate(zip(shape.mesh.wires, forces[:, i], strict=False)):
+            hanging, node = shape.wires[wire], stations.supports[i]
+            x, y = hanging.x[node], hanging.y[node]
+            reach = arm.length * force[0] / np.linalg.norm(force) if arm.length else 0.15
+            ax.plot([x, x], [y, y + reach], color=style.SUPPORT, linewidth=2.2, solid_capstyle="round")
+            ax.plot(x, y + reach, marker="s", color=style.SUPPORT, markersize=4)
+            if wire == 0:
+                ends.append((x, y + reach))
+        texts.append(" + ".join(f"{abs(force[0]):.0f}" for force in forces[:, i]) + " N")
+    _name_forces(ax, ends, texts)
+
+
+def _name_forces(ax: Axes, ends: Sequence[tuple[float, float]], texts: Sequence[str]) -> None:
+    """Beside the arms' ends, upright where there is little room, to the left of the last one."""
+    rotation = style.rotation_that_fits(ax, [x for x, _ in ends], texts, 8)
+    if rotation is None:
+        return
+    for i, (place, text) in enumerate(zip(ends, texts, strict=True), start=1):
+        offset, side = (-6, "right") if i == len(ends) else (6, "left")
+        style.annotate(ax, text, place, (offset, 0), ha=side, va="center", rotation=rotation)

@@ -1,4 +1,4 @@
-"""Pictures of a catenary at rest: its static shape with the droppers' tensions, its elasticity."""
+"""Pictures of a line at rest: its shape with the droppers' tensions, its elasticity, its eigenforms."""
 
 from __future__ import annotations
 
@@ -8,29 +8,19 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 
+from catenary_fe.layout import counted
 from catenary_fe.layout.arguments import checked
 from catenary_fe.results import Elasticity
+from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
 from catenary_fe.statics import Shape
-from catenary_fe.views.stretch import Stretch, evaluated_pair, mark_detail, mark_evaluated, stretch
-from catenary_fe.views.style import (
-    CONTACT,
-    DROPPER,
-    MESSENGER,
-    STITCH,
-    finish,
-    headroom,
-    label_row,
-    mark_supports,
-    new_axes,
-    new_panels,
-    styled,
-)
+from catenary_fe.views import style
+from catenary_fe.views.stretch import Stretch, evaluated_pair, frame, mark_detail, stretch
 
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
 @checked
-@styled
+@style.styled
 def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions below it.
 
@@ -44,7 +34,7 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
         return _heights(ax, shape, part)
     detail = None if spans or part.is_close else evaluated_pair(shape.catenary)
     rows = 3 if detail else 2
-    whole, *others = new_panels((11.0, 2.9 * rows), [1] * rows)
+    whole, *others = style.new_panels((11.0, 2.9 * rows), [1] * rows)
     _tensions(others[0], shape, part)
     if detail:
         _heights(others[1], shape, detail)
@@ -54,31 +44,32 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
 def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = None) -> Axes:
     catenary = shape.catenary
     nominal = catenary.contact_wire_height
-    _frame(ax, part)
+    frame(ax, part)
+    style.mark_supports(ax, part.support_x)
     names = ["contact wire"] if len(shape.contact_wires) == 1 else ["right contact wire", "left contact wire"]
-    for wire, name, colour in zip(shape.contact_wires, names, (CONTACT, _LEFT), strict=False):
+    for wire, name, colour in zip(shape.contact_wires, names, (style.CONTACT, _LEFT), strict=False):
         x = part.sampled(wire.x)
         ax.plot(x, 1e3 * (wire.height(x) - nominal), color=colour, linewidth=1.4, label=name)
     chosen = part.inside(catenary.dropper_positions)
     x, design = catenary.dropper_positions[chosen], 1e3 * (catenary.design_heights[chosen] - nominal)
     size = 4 if part.is_close else 2
-    ax.plot(x, design, "o", color=DROPPER, markersize=size, label="design height at the droppers")
-    headroom(ax, 0.35)
+    ax.plot(x, design, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
+    style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
     if detail:
         mark_detail(ax, detail)
     else:
         texts = [f"{force:.0f} N" for force in shape.dropper_forces[chosen]]
-        if label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
+        if style.label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
-    ax.legend(loc="upper left", fontsize=8, ncols=6, frameon=False)
-    return finish(ax, "position along the line (m)", "height above nominal (mm)", _title(part, what))
+    return _finished(ax, part, "height above nominal (mm)", what)
 
 
 def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:
     """Tension of each dropper, in the colour of the wire that it hangs on, or of two contact wires holds."""
     catenary = shape.catenary
-    _frame(ax, part)
+    frame(ax, part)
+    style.mark_supports(ax, part.support_x)
     chosen = part.inside(catenary.dropper_positions)
     x, forces = catenary.dropper_positions[chosen], shape.dropper_forces[chosen]
     for name, colour, of_kind in _kinds(shape):
@@ -87,9 +78,13 @@ def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:
             ax.vlines(x[mine], 0, forces[mine], color=colour, linewidth=1.6, label=name)
             ax.plot(x[mine], forces[mine], ".", color=colour, markersize=4)
     ax.set_ylim(0, 1.45 * forces.max(initial=1.0))
-    label_row(ax, x, forces, [f"{force:.0f}" for force in forces], above=3)
+    style.label_row(ax, x, forces, [f"{force:.0f}" for force in forces], above=3)
+    return _finished(ax, part, "dropper tension (N)", "dropper tensions")
+
+
+def _finished(ax: Axes, part: Stretch, y: str, what: str) -> Axes:
     ax.legend(loc="upper left", fontsize=8, ncols=6, frameon=False)
-    return finish(ax, "position along the line (m)", "dropper tension (N)", _title(part, "dropper tensions"))
+    return style.finish(ax, style.ALONG, y, f"{part.catenary.name}: {what}{part.where}")
 
 
 def _kinds(shape: Shape) -> list[tuple[str, str, np.ndarray]]:
@@ -97,47 +92,30 @@ def _kinds(shape: Shape) -> list[tuple[str, str, np.ndarray]]:
     mesh = shape.mesh
     if mesh.contact_wires > 1:
         right = mesh.lower.wire == 0
-        return [("holds the right contact wire", CONTACT, right), ("holds the left one", _LEFT, ~right)]
+        return [("holds the right contact wire", style.CONTACT, right), ("holds the left one", _LEFT, ~right)]
     stitch = mesh.upper.wire >= mesh.first_stitch
-    return [("on the messenger wire", MESSENGER, ~stitch), ("on a stitch wire", STITCH, stitch)]
+    return [("on the messenger wire", style.MESSENGER, ~stitch), ("on a stitch wire", style.STITCH, stitch)]
 
 
-def _frame(ax: Axes, part: Stretch) -> None:
-    room = part.end - part.start
-    ax.set_xlim(part.start - 0.02 * room, part.end + 0.02 * room)
-    mark_evaluated(ax, part)
-    mark_supports(ax, part.support_x)
-
-
-def _title(part: Stretch, what: str) -> str:
-    where = "" if len(part.spans) == len(part.catenary.spans) else f", {part}"
-    return f"{part.catenary.name}: {what}{where}"
-
-
-@styled
+@style.styled
 def plot_elasticity(elasticity: Elasticity, *, ax: Axes | None = None) -> Axes:
     """Elasticity along the line with its extremes; spans that were not computed leave a gap."""
-    ax = new_axes(ax)
+    ax = style.new_axes(ax)
     x, e = elasticity.position, 1e3 * elasticity.values
-    mark_supports(ax, elasticity.support_position)
+    style.mark_supports(ax, elasticity.support_position)
     for number, piece in enumerate(_pieces(elasticity)):
         label = None if number else "elasticity"
-        ax.plot(x[piece], e[piece], color=CONTACT, marker=".", markersize=4, linewidth=1.4, label=label)
+        ax.plot(x[piece], e[piece], color=style.CONTACT, marker=".", markersize=4, linewidth=1.4, label=label)
     low, high = ax.get_xlim()
     for index, place in ((e.argmin(), -12), (e.argmax(), 6)):
         share = (x[index] - low) / (high - low)
-        ax.annotate(
-            f"{e[index]:.3f} mm/N at {x[index]:.1f} m",
-            (x[index], e[index]),
-            xytext=(0, place),
-            textcoords="offset points",
-            ha="left" if share < 0.1 else "right" if share > 0.9 else "center",
-            fontsize=8,
-        )
+        side = "left" if share < 0.1 else "right" if share > 0.9 else "center"
+        text = f"{e[index]:.3f} mm/N at {x[index]:.1f} m"
+        style.annotate(ax, text, (x[index], e[index]), (0, place), ha=side)
     ax.set_ylim(0, 1.2 * e.max())
     ax.legend(loc="lower right", fontsize=8)
     title = f"Elasticity under {elasticity.force:g} N, non-uniformity {100 * elasticity.non_uniformity:.1f} %"
-    return finish(ax, "position along the line (m)", "elasticity (mm/N)", title)
+    return style.finish(ax, style.ALONG, "elasticity (mm/N)", title)
 
 
 def _pieces(elasticity: Elasticity) -> list[slice]:
@@ -149,3 +127,62 @@ def _pieces(elasticity: Elasticity) -> list[slice]:
         if after < x.size and x[after] > b - 1e-6:
             starts.add(after)
     return [slice(a, b) for a, b in pairwise([*sorted(starts), x.size])]
+
+
+@checked
+@style.styled
+def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
+    """Both wires in one eigenform (mode numbered from 0), each about its own line, droppers between them.
+
+    Drawn is the vertical motion, of a lateral mode the motion to the left.
+    """
+    ax = style.new_axes(ax, (10.0, 3.0))
+    catenary = modes.catenary
+    x = np.linspace(0, catenary.length, 120 * len(catenary.spans) + 1)
+    wires = {
+        "messenger wire": (modes.messenger, 1.0, style.MESSENGER),
+        "contact wire": (modes.contact, -1.0, style.CONTACT),
+    }
+    kind = modes.kind(mode)
+    drawn = {name: _drawn(wire, mode, kind.kind == "sideways") for name, (wire, _, _) in wires.items()}
+    largest = max(np.abs(shape).max() for shape in drawn.values())
+    style.mark_supports(ax, catenary.support_positions)
+    at = catenary.dropper_positions
+
+    def place(name: str, at: np.ndarray) -> np.ndarray:
+        wire, rest, _ = wires[name]
+        return np.asarray(rest + 0.8 * np.interp(at, wire.x, drawn[name]) / largest)
+
+    ends = [place(name, at) for name in wires]
+    ax.vlines(at, ends[1], ends[0], color=style.DROPPER, linewidth=0.6)
+    for name, (_, rest, colour) in wires.items():
+        ax.axhline(rest, color="#cccccc", linewidth=0.6)
+        ax.plot(x, place(name, x), color=colour, linewidth=1.3, label=name)
+    ax.set_yticks([1.0, -1.0], ["messenger\nwire", "contact\nwire"])
+    ax.set_ylim(-2.1, 2.7)  # room for a legend
+    ax.margins(x=0.01)
+    part = {"along": " (its vertical part, magnified)", "sideways": " (seen from above)"}.get(kind.kind, "")
+    title = f"mode {mode + 1}: {modes.frequencies[mode]:.3f} Hz, {kind}{part}"
+    return style.finish(ax, style.ALONG, "", title)
+
+
+def _drawn(wire: WireShapes, mode: int, lateral: bool) -> np.ndarray:
+    shapes = wire.lateral if lateral and wire.lateral is not None else wire.values
+    return np.asarray(shapes[mode])
+
+
+@checked
+@style.styled
+def plot_spectrum(modes: Modes, *, ax: Axes | None = None) -> Axes:
+    """How many modes lie below a frequency, by what they are: clusters are steps."""
+    ax = style.new_axes(ax, (10.0, 3.6))
+    kinds = [f"bays, shape {k.half_waves}" if k.kind == "bays" else k.kind for k in modes.kinds()]
+    number = np.arange(1, len(modes) + 1)
+    names = sorted(set(kinds), key=lambda name: (name in IN_WORDS, name.startswith("bays"), name))
+    for name, colour in zip(names, style.distinct(len(names)), strict=True):
+        of_kind = np.array([k == name for k in kinds])
+        label = f"{IN_WORDS.get(name, name)}: {of_kind.sum()}"
+        ax.plot(modes.frequencies[of_kind], number[of_kind], ".", color=colour, markersize=5, label=label)
+    ax.legend(fontsize=8, loc="upper left")
+    title = f"{modes.catenary.name}: {counted(len(modes), 'mode')} up to {modes.frequencies[-1]:.1f} Hz"
+    return style.finish(ax, "frequency (Hz)", "number of modes below it", title)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 from matplotlib import colormaps, style
@@ -14,6 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
+
+from catenary_fe.results import Run
 
 _Arguments = ParamSpec("_Arguments")
 _Drawn = TypeVar("_Drawn")
@@ -27,6 +29,7 @@ SUPPORT = "#444444"
 SLACK = "#d62728"  # a dropper that has gone slack
 EVALUATED = "#f3efe2"  # behind the evaluated spans
 OTHERS = "#c9c9c9"  # what is not evaluated
+ALONG = "position along the line (m)"
 PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
 _MANY = (*PANTOGRAPHS, "#b8860b", "#2a8f8f", "#a33b5e", "#5a5a5a")
 
@@ -36,13 +39,18 @@ def wire_colour(name: str) -> str:
     return next((colour for kind, colour in WIRES.items() if kind in name), MESSENGER)
 
 
+def pantograph_colour(number: int) -> str:
+    """Colour of a pantograph, numbered from 0."""
+    return PANTOGRAPHS[number % len(PANTOGRAPHS)]
+
+
 def sequence(count: int) -> list[str]:
-    """So many colours in order, each its own, dark to bright."""
+    """Distinct colours in order, dark to bright."""
     return [to_hex(colormaps["viridis"](0.9 * i / max(1, count - 1))) for i in range(count)]
 
 
 def distinct(count: int) -> list[str]:
-    """So many colours to tell curves apart, each its own."""
+    """Distinct colours to tell curves apart."""
     return list(_MANY[:count]) if count <= len(_MANY) else sequence(count)
 
 
@@ -65,7 +73,7 @@ def own_style(settings: Mapping[str, Any] | None = None) -> Iterator[None]:
 
 
 def styled(draw: Callable[_Arguments, _Drawn]) -> Callable[_Arguments, _Drawn]:
-    """Draw in our own style; in texts a dollar sign is one."""
+    """Draw in our own style, with dollar signs in texts taken literally."""
 
     @wraps(draw)
     def drawn(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Drawn:
@@ -118,8 +126,23 @@ def finish(ax: Axes, x: str, y: str, title: str) -> Axes:
     return ax
 
 
+def legend(ax: Axes, columns: int = 4, where: Literal["upper left", "upper right"] = "upper left") -> None:
+    """Names of the curves on a light ground."""
+    ax.legend(loc=where, fontsize=8, ncols=columns, framealpha=0.9)
+
+
+def finish_run(ax: Axes, run: Run, x: str, y: str, what: str) -> Axes:
+    """As :func:`finish`, of a run: the title says which one and what is shown, and which checks it fails."""
+    return note_failed(finish(ax, x, y, run_title(run, what)), run.failed_checks)
+
+
+def run_title(run: Run, what: str) -> str:
+    """The run's title and speed, and what is shown of it."""
+    return f"{run.data.attrs['title']}, {3.6 * run.speed:.0f} km/h{what}"
+
+
 def note_failed(ax: Axes, failed: Iterable[str], whose: str = "") -> Axes:
-    """Say under the title which checks the shown result fails, if any."""
+    """Name under the title the checks that the result fails, if any."""
     if names := ", ".join(dict.fromkeys(failed)):
         title = f"{ax.get_title(loc='left')}\nchecks failed{whose}: {names}"
         ax.set_title(title, fontsize=10, loc="left")
@@ -180,6 +203,13 @@ def rotation_that_fits(ax: Axes, x: ArrayLike, texts: Sequence[str], size: float
     return 90 if (room > 1.3 * size).all() else None
 
 
+def annotate(
+    ax: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **options: Any
+) -> None:
+    """Write a text beside a point, so many points [pt] to the right and up."""
+    ax.annotate(text, place, offset, textcoords="offset points", **{"fontsize": 8, **options})
+
+
 def label_row(
     ax: Axes, x: ArrayLike, y: ArrayLike, texts: Sequence[str], *, size: float = 7, above: float = 0
 ) -> bool:
@@ -191,15 +221,7 @@ def label_row(
     if rotation is None:
         return False
     places = np.broadcast_to(np.asarray(y, dtype=float), np.shape(x))
+    options = {"ha": "center", "va": "bottom" if above else "center", "rotation": rotation, "fontsize": size}
     for place, height, text in zip(np.asarray(x, dtype=float), places, texts, strict=True):
-        ax.annotate(
-            text,
-            (place, height),
-            xytext=(0, above),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if above else "center",
-            rotation=rotation,
-            fontsize=size,
-        )
+        annotate(ax, text, (place, height), (0, above), **options)
     return True

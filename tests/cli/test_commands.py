@@ -106,7 +106,7 @@ def test_run_prints_a_table(capsys, layout):
     assert code == 0
     assert "EN 50318:2002 (2)" in out
     assert "spans 2, 3, zero-phase 20 Hz filter" in " ".join(out.split())
-    assert "standard deviation (N)" in out
+    assert "standard deviation σ (N)" in out
 
 
 PANTOGRAPH = ["--pantograph", "EN 50318:2002"]

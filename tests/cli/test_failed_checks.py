@@ -9,7 +9,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe import views
 from catenary_fe.cli import main
-from catenary_fe.cli.sweep_verdicts import Verdict, in_words
+from catenary_fe.cli.verdicts import Verdict, in_words
 from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comparison
 
 FAILED = "end reflection"  # a slow train on three spans

@@ -10,8 +10,8 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.cli import main
-from catenary_fe.cli.compare import common_filter
-from catenary_fe.cli.criteria import kept_evaluation
+from catenary_fe.cli.stored import common_filter
+from catenary_fe.cli.verdicts import kept_evaluation
 
 PANTOGRAPH = (
     'name = "mine"\nuplift_force = 110.0\nstages = [{ mass = 9.0, stiffness = 60.0, damping = 80.0 }]\n'

@@ -12,8 +12,7 @@ import pytest
 
 import catenary_fe
 from catenary_fe.cli import surroundings
-from catenary_fe.cli.folder import output_folder, save_picture
-from catenary_fe.cli.inputs import InputFiles
+from catenary_fe.cli.folder import InputFiles, output_folder, save_picture
 from catenary_fe.cli.terminal import print_json
 from catenary_fe.layout import InputError
 from catenary_fe.views import plot_layout

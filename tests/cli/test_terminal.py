@@ -11,7 +11,7 @@ import click
 import pytest
 
 from catenary_fe.cli import main
-from catenary_fe.cli.terminal import _span_numbers
+from catenary_fe.cli.options import _span_numbers
 
 
 def at_a_terminal(arguments, **environment):

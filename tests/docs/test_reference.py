@@ -9,9 +9,11 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from docutils import nodes
 from pydantic import BaseModel
 
 import catenary_fe as cf
+from catenary_fe.results.quantities import FORCE, OF_RUN
 
 DOCS = Path(__file__).parents[2] / "docs"
 OTHERS = "howto,*.md,reference/commands.md"
@@ -41,6 +43,14 @@ def owner_of(path):
     for i, word in enumerate(words[1:], start=2):
         found = getattr(found, word, None) or import_module(".".join(words[:i]))
     return found
+
+
+def test_the_table_of_key_figures_is_that_of_the_program(key_tables):
+    _, *rows = key_tables.figures_table().findall(nodes.row)
+    texts = [[cell.astext() for cell in row] for row in rows]
+    shown = {key: (unit, decimals) for key, _, _, unit, decimals in texts}
+    assert list(shown) == [q.key for q in (*FORCE.values(), *OF_RUN)]
+    assert shown["std_N"] == ("N", "1") and shown["contact_loss_percent"] == ("% of the time", "2")
 
 
 def test_directives_name_public_paths(directives):

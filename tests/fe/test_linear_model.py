@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.engines.modal.eigen import linear_system
 from catenary_fe.fe.cable import hermite
 from catenary_fe.fe.reduction import linear_model
 from catenary_fe.fe.system import assemble
@@ -17,7 +16,7 @@ def reduced(short_shape):
 
 @pytest.fixture(scope="module")
 def whole(short_shape):
-    return linear_system(short_shape.catenary, short_shape.mesh, short_shape.installation)
+    return short_shape.system
 
 
 def receptance(mass, damping, stiffness, row, frequency):
@@ -37,12 +36,12 @@ def test_receptance_of_the_contact_wire(reduced, whole, short_shape, frequency, 
     row = np.zeros(reduced.size)
     row[line.dof[e : e + 2].ravel()] = weights
     ours = receptance(reduced.mass, reduced.damping, reduced.stiffness, row, frequency)
-    filled = np.zeros(whole.transformation.shape[0])
-    width = whole.node_width
-    vertical = width * np.array([[e], [e + 1]]) + [width // 2 - 1, width - 1]
-    filled[vertical.ravel()] = weights
-    free = whole.transformation.T @ filled
-    theirs = receptance(whole.mass, whole.damping, whole.stiffness, free, frequency)
+    (path,) = whole.contact_paths
+    filled = np.zeros(whole.place.size)
+    filled[path.index[e : e + 2].ravel()] = weights
+    damping = whole.free(whole.damping() + whole.taut_damping())
+    parts = whole.free(whole.mass), damping, whole.tangent(0 * filled)
+    theirs = receptance(*parts, whole.gather(filled), frequency)
     # statics agree to rounding; near a resonance the mass that moves along between clamps shows
     assert ours == pytest.approx(theirs, rel=1e-4 if frequency == 0 else 0.02)
     assert reduced.size < 0.6 * whole.size

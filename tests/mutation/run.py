@@ -29,7 +29,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 _STATICS = [
-    "tests/statics/test_form_checks.py",
+    "tests/statics/test_rules.py",
     "tests/statics/test_form.py",
     "tests/space/test_bad_designs.py",
     "tests/space/test_statics_in_space.py",
@@ -44,16 +44,13 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.results.statistics": ["tests/results/test_statistics.py", *_RUNS],
     "catenary_fe.results.signal": ["tests/results/test_statistics.py"],
     "catenary_fe.results.criteria": ["tests/results/test_criteria.py"],
+    "catenary_fe.results.quantities": ["tests/results/test_quantities.py", "tests/results/test_csv_files.py"],
     "catenary_fe.results.run": _RUNS,
     "catenary_fe.results.modes": _SHAPES,
-    "catenary_fe.results.modal_run": _SHAPES,
     "catenary_fe.results.wires": _SHAPES,
-    "catenary_fe.results.elasticity": _SHAPES,
     "catenary_fe.results.comparison": _TABLES,
     "catenary_fe.results.export": _TABLES,
     "catenary_fe.results.files": _FILES,
-    "catenary_fe.results.checksum": _FILES,
-    "catenary_fe.results.partial": _FILES,
     "catenary_fe.statics.form_finding": _STATICS,
     "catenary_fe.statics.cut_wires": _STATICS,
     "catenary_fe.statics.rules": _STATICS,
@@ -64,9 +61,9 @@ TARGETS = {  # module: tests that are quick and touch it
     ],
     "catenary_fe.results.quality": [
         "tests/results/test_pantograph_balances.py",
-        "tests/results/test_guard_values.py",
+        "tests/results/test_quality_values.py",
     ],
-    "catenary_fe.results.check": ["tests/results/test_guard_values.py"],
+    "catenary_fe.results.check": ["tests/results/test_quality_values.py"],
     "catenary_fe.engines.linearised.doubts": ["tests/engines/test_doubts.py"],
     "catenary_fe.engines.contact_solver": ["tests/engines/test_forces_of_a_step.py"]
     + [

@@ -8,7 +8,7 @@ import pytest
 from made_runs import HEIGHT, made_line, made_pantograph, made_run
 
 import catenary_fe as cf
-from catenary_fe.results.comparison import QUANTITIES, failed_checks, input_differences, key_figures
+from catenary_fe.results.comparison import COMPARED, failed_checks, input_differences, key_figures
 from catenary_fe.results.export import history_tables, write_tables
 
 TWO = (made_pantograph(name="first"), made_pantograph(name="second"))
@@ -26,7 +26,7 @@ def test_key_figures_of_each_pantograph_of_each_run():
     second = made_run(None, *TWO, start=(5.0, 6.0), dropper_force=0.0)
     columns = key_figures([first, second], ["a", "b"], "zero-phase")
     assert [c.label for c in columns] == ["a", "b: first", "b: second"]
-    assert all(list(c.values) == list(QUANTITIES) for c in columns)
+    assert all(list(c.values) == [q.key for q in COMPARED] for c in columns)
     own = columns[0].values
     assert own["std_N"] == first.contact_force_statistics(filter="zero-phase")[0].std
     assert own["std_N"] != key_figures([first, second], ["a", "b"])[0].values["std_N"]

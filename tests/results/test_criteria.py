@@ -203,7 +203,7 @@ def test_speed_against_the_wave_speed(short_run, short):
 
 
 def test_elasticity_is_reported_where_the_run_holds_it(short_run):
-    name = "elasticity non-uniformity"
+    name = "non-uniformity of the elasticity"
     assert verdicts(short_run, name) == []
     row = criteria_rows(short_run.with_elasticity(CURVE), "AC")[-1]
     assert (row.name, row.passed, row.value_text) == (name, None, "25.00 %")

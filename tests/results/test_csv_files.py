@@ -2,7 +2,8 @@
 
 import pytest
 
-from catenary_fe.results.csv_files import OF_HISTORIES, cell, decimals_of, write_csv
+from catenary_fe.results.export import cell, write_csv
+from catenary_fe.results.quantities import OF_HISTORIES, decimals_of
 
 
 @pytest.mark.parametrize(

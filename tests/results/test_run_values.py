@@ -62,7 +62,7 @@ def test_spans_that_a_pantograph_does_not_reach():
 def test_a_partial_run_has_figures_of_what_all_of_it_passed():
     """It ends with the pantographs at 200 m, the end of the evaluated spans, and just before it."""
     run = made_run(None, *TWO, start=(5.0, 4.9), times=1951, partial=partial(), warnings='["slow"]')
-    assert run.partial == cf.results.partial.Partial(**STOPPED)
+    assert run.partial == cf.results.check.Partial(**STOPPED)
     assert not run.reached
     first, second = run.figures()
     assert first.mean == pytest.approx(100)

@@ -5,10 +5,8 @@ import pytest
 from made_runs import HEIGHT, made_line, made_run
 
 import catenary_fe as cf
-from catenary_fe.results.elasticity import Elasticity
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import Modes, WireShapes
-from catenary_fe.results.wires import contact_wires
+from catenary_fe.results.modes import ModalRun, Modes, WireShapes
+from catenary_fe.results.wires import Elasticity, contact_wires
 
 TIMES, X = np.array([0.0, 0.1, 0.3]), np.linspace(0, 300, 31)
 

@@ -133,7 +133,7 @@ def test_numbers_by_name_in_display_units():
     assert str(s) == (
         "P: mean 120.0 N, standard deviation 30.0 N, statistical maximum 210.0 N and minimum 31.0 N, actual"
         " maximum 180.0 N and minimum 60.0 N, contact loss 1.50 %, 1.25 % in 2 losses longer"
-        " than 5 ms, the longest 8 ms"
+        " than 5 ms, the longest 8.0 ms"
     )
 
 

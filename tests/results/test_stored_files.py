@@ -14,8 +14,8 @@ from made_runs import made_run
 
 import catenary_fe as cf
 from catenary_fe.results import files
-from catenary_fe.results.checksum import ATTRIBUTE, checksum
-from catenary_fe.results.partial import Partial
+from catenary_fe.results.check import Partial
+from catenary_fe.results.files import ATTRIBUTE, checksum
 
 
 def test_a_file_is_not_there_before_it_is_whole(tmp_path):

@@ -8,9 +8,8 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.views import plot_run_waves
-from catenary_fe.views.film import film
+from catenary_fe.views.film import film, scene
 from catenary_fe.views.report.series import force_chart, motion, uplift_chart
-from catenary_fe.views.scene import scene
 
 
 @pytest.fixture(scope="module")

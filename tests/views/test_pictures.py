@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import catenary_fe as cf
 from catenary_fe import views
 from catenary_fe.results import Criterion
+from catenary_fe.results.quantities import FORCE, UPLIFT
 from catenary_fe.views.style import EVALUATED, WIRES, distinct, sequence, styled
 
 
@@ -289,3 +290,21 @@ def test_every_picture_is_drawn_in_our_own_style():
         for name, drawn in vars(module).items():
             if name.startswith("plot_") or name in ("film", "report_page", "comparison_page"):
                 assert isinstance(drawn, ModuleType) or ours in wrappers(drawn), (module, name)
+
+
+@pytest.mark.parametrize("plot", ["forces", "deviation", "uplift"])
+@pytest.mark.parametrize("by", [[], ["contact_wire.tension"]])
+def test_the_legend_of_a_sweep_stays_inside(plot, by):
+    """Also where names are long: two tensions, two pantographs each."""
+    keys = [*(q.key for q in FORCE.values()), UPLIFT.key]
+    rows = [
+        {"speed_kmh": v, "contact_wire.tension": tension, "number": n} | dict.fromkeys(keys, 100.0 + v + n)
+        for v in (150.0, 200.0)
+        for tension in ((20e3, 22e3) if by else (20e3,))
+        for n in ((1, 2) if by else (1,))
+    ]
+    ax = getattr(views, f"plot_sweep_{plot}")(rows, "speed_kmh", by)
+    FigureCanvasAgg(ax.figure).draw()
+    legend, inside = ax.get_legend().get_window_extent(), ax.get_window_extent()
+    assert legend.x0 >= inside.x0 and legend.x1 <= inside.x1
+    assert legend.y0 >= ax.transData.transform((150.0, ax.dataLim.y1))[1]

@@ -48,7 +48,7 @@ def test_all_inputs_and_sources(short_run):
 
 def test_the_force_span_by_span(short_run):
     table = span_table(short_run, "causal")
-    assert table.columns == ("span", "mean (N)", "σ (N)", "maximum (N)", "minimum (N)")
+    assert table.columns == ("span", "mean (N)", "σ (N)", "max (N)", "min (N)")
     assert [row[0] for row in table.rows] == ["2", "3"]
     statistics = short_run.contact_force_statistics([3])[0]
     assert table.rows[1][1:3] == (f"{statistics.mean:.1f}", f"{statistics.std:.1f}")

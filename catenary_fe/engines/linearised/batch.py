@@ -52,12 +52,15 @@ BLOCK = 250  # steps between looks at which slots are free
 class Batch:
     """Room for runs that advance together, one or ``SLOTS`` at once."""
 
-    def __init__(self, setup: Setup, sizes: Sizes, slots: int, every: int = 0) -> None:
+    def __init__(
+        self, setup: Setup, sizes: Sizes, slots: int, every: int = 0, signals: Floats | None = None
+    ) -> None:
         assert slots in (1, SLOTS)
         n, line = setup.size, setup.line
         j, m = sizes.contacts, sizes.coordinates
         self._setup, self.count = setup, slots
         self._operator = make_operator(setup, slots)
+        self.signals = np.zeros((len(setup.line.patterns), sizes.steps + 2)) if signals is None else signals
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
         self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal)
         width = 2 * line.contact_compliance.value.shape[1]
@@ -104,7 +107,7 @@ class Batch:
         flat = Wires(*(array.reshape(-1) for array in wires))
         with vectorising():
             take = _advance_one if self.count == 1 else _advance_eight
-            take(setup.scheme, self._operator, setup.line, wires, flat, *rest)
+            take(setup.scheme, self._operator, setup.line, self.signals, wires, flat, *rest)
 
     def history(self, slot: int, start: InitialState, steps: int, system: System) -> History:
         """What a slot's run recorded."""
@@ -150,6 +153,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
         scheme: Scheme,
         operator: Operator,
         line: Line,
+        signals: Floats,
         wires: Wires,
         flat: Wires,
         heads: PantographParameters,
@@ -162,6 +166,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
         for _ in range(steps):
             predict(scheme, operator.beta, flat)
             flat.x[:] = line.load
+            for k in range(line.patterns.shape[0]):
+                flat.x[:] += signals[k, pantographs.step[0] + 1] * line.patterns[k]
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
             couple_stretch_one(line, flat.q, work.tension[0], flat.x)
@@ -175,6 +181,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
         scheme: Scheme,
         operator: Operator,
         line: Line,
+        signals: Floats,
         wires: Wires,
         flat: Wires,
         heads: PantographParameters,
@@ -187,6 +194,9 @@ def _loops(sources: str) -> tuple[Any, Any]:
             predict(scheme, operator.beta, flat)
             for i in range(line.load.size):
                 wires.x[i, :] = line.load[i]
+            for k in range(line.patterns.shape[0]):
+                for c in range(SLOTS):
+                    wires.x[:, c] += signals[k, pantographs.step[c] + 1] * line.patterns[k]
             take_eight(operator.stiffness, wires.w, wires.x)
             take_eight(operator.rest, wires.v, wires.x)
             couple_stretch_eight(line, wires.q, work.tension, wires.x)

@@ -97,7 +97,10 @@ class LinearisedEngine:
         if not waiting:
             return
         sizes = self._sizes(jobs)
-        batch = Batch(self.setup, sizes, most_slots(self.setup, sizes, len(jobs)), self._every)
+        times = self._time.step * np.arange(sizes.steps + 2, dtype=float)
+        _, signals = self._system.load(times)
+        slots = most_slots(self.setup, sizes, len(jobs))
+        batch = Batch(self.setup, sizes, slots, self._every, signals)
         active: dict[int, _Job] = {}
         while waiting or active:
             for slot in batch.free():
@@ -134,7 +137,7 @@ class LinearisedEngine:
         begin, case = clock.perf_counter(), job.task.case
         try:
             placed = place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
-            job.start = static_contact(self.setup, placed, case.speed)
+            job.start = static_contact(self.setup, placed, case.speed, batch.signals[:, 0])
         except CatenaryError as error:
             job.task.failed(error)
             return False

@@ -47,6 +47,11 @@ class Setup:
     stiffness: Any
     rest: Any
 
+    def load_at(self, signals: Floats) -> Floats:
+        """[N], shape (size,): with the loads that vary in time at signals of shape (loads,)."""
+        load: Floats = self.line.load + signals @ self.line.patterns
+        return load
+
     @property
     def size(self) -> int:
         """Number of coordinates, filled up to a multiple of four."""
@@ -97,6 +102,7 @@ def _filled_up(model: LinearModel) -> LinearModel:
         stiffness=stiffness,
         damping=block_diag([model.damping, csr_matrix((more, more))]).tocsr(),
         imbalance=np.append(model.imbalance, np.zeros(more)),
+        patterns=np.hstack([model.patterns, np.zeros((len(model.patterns), more))]),
         dropper_rows=hstack([model.dropper_rows, csr_matrix((model.dropper_rows.shape[0], more))]).tocsr(),
     )
 
@@ -127,6 +133,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         links=_links(model, factor),
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
+        patterns=model.patterns,
         supports=np.concatenate([wire.dof[wire.supports, 0] for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,

@@ -23,8 +23,12 @@ _CHANGES = 50  # of what is slack or off the wire, and of the terms of second or
 _SETTLED = 1e-9  # of the largest of all [m] and tensions [N], by which these may still change one
 
 
-def static_contact(setup: Setup, pantographs: Sequence[PlacedPantograph], speed: float) -> InitialState:
+def static_contact(
+    setup: Setup, pantographs: Sequence[PlacedPantograph], speed: float, signals: Floats | None = None
+) -> InitialState:
     """Masses, contact forces, and wires in static equilibrium; steady arms that are links on their tangents.
+
+    signals : shape (loads,), of loads that vary in time, at the start; unset: 0
 
     Raises SolverError where no consistent set of slack droppers is found, or terms of second order do not
     settle.
@@ -32,12 +36,13 @@ def static_contact(setup: Setup, pantographs: Sequence[PlacedPantograph], speed:
     problem = _Contact(setup, pantographs)
     slack: list[int] = []
     off: list[int] = []
-    shifted = setup.static.solve(setup.line.load)
+    load = setup.line.load if signals is None else setup.load_at(signals)
+    shifted = setup.static.solve(load)
     for _ in range(_CHANGES):
         heads, forces, q, spring = problem.solve(slack, off, shifted)
         now = np.flatnonzero(spring <= 0).tolist()
         now_off = [j for j, force in enumerate(forces) if force < 0 or j in off]
-        before, shifted = shifted, setup.static.solve(setup.line.load + stretch_loads(setup.line, q))
+        before, shifted = shifted, setup.static.solve(load + stretch_loads(setup.line, q))
         moved = problem.take_tangents(forces, q)
         settled = np.abs(shifted - before).max() <= _SETTLED * np.abs(q).max()
         if now == slack and now_off == off and settled and not moved:

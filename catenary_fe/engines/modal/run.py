@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.compiled import plain
+from catenary_fe.engines.contact_solver import solve_points
 from catenary_fe.engines.settings import SHORTEST_STEP
-from catenary_fe.layout import DescribedPantograph, ElasticPantograph, InputError, Pantograph
+from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number
-from catenary_fe.results.modal_run import ModalRun
-from catenary_fe.results.modes import Modes
+from catenary_fe.layout.substructure import Substructure
+from catenary_fe.results.modes import ModalRun, Modes
 from catenary_fe.statics import Shape
 
 Floats = NDArray[np.float64]
 _log = logging.getLogger(__name__)
-_PIECES = 8  # straight pieces of an elastic pantograph's law to try in a step
 
 
 @checked
 def modal_run(
     shape: Shape,
     modes: Modes,
-    pantograph: DescribedPantograph,
+    pantograph: AnyPantograph,
     *,
     speed: float,
     start: float | None = None,
@@ -34,7 +34,7 @@ def modal_run(
 ) -> ModalRun:
     """Run one pantograph along the line, whose motion is a sum of eigenforms about its static state.
 
-    Droppers stay taut, damping couples no modes, and what the modes above the last one would give is missing.
+    Droppers stay taut, damping couples no modes, and what the modes above the last one would add is missing.
     Each mode is integrated exactly for a force that changes evenly over a step.
 
     shape, modes : the line and its modes, of the same mesh; ``modes.below(20.0)`` cuts them off at 20 Hz
@@ -77,8 +77,8 @@ def modal_run(
         line.start(force[0])
     for n in range(count):
         if n:
-            free, give = line.predict(n, force[n - 1])
-            force[n] = head.update_contact(sag[n] + free, give, force[n - 1])
+            free, compliance = line.predict(n, force[n - 1])
+            force[n] = head.push(sag[n] + free, compliance, force[n - 1])
             line.finish(n, force[n])
         coordinates[n], lift[n] = line.q, line.shapes[n] @ line.q
         masses[n] = head.heights
@@ -146,91 +146,70 @@ def _exact_step(system: Floats, gain: Floats, step: float) -> tuple[Floats, Floa
     return whole[..., :n, :n], whole[..., :n, n] - after, after
 
 
-@dataclass
-class _Elastic:
-    """A force that depends on the wire's height alone."""
+class _Head:
+    """A pantograph on one point of contact."""
 
-    pantograph: ElasticPantograph
-    state: Floats
-    heights: Floats
-
-    def start(self, sag: float, give: float) -> float:
-        return self.update_contact(sag, give, 0.0)
-
-    def update_contact(self, height: float, give: float, before: float) -> float:
-        """[N] at the step's end, on a wire that is ``height`` [m] high unpushed and gives way."""
-        force = before
-        for _ in range(_PIECES):
-            at_zero, stiffness = self.pantograph.tangent(height + give * force)
-            met = max(0.0, (at_zero - stiffness * height) / (1 + stiffness * give))
-            if abs(met - force) <= 1e-9 * max(1.0, met):
-                return met
-            force = met
-        # the straight pieces alternate; but the wire rises with the force, and the law falls
-        from scipy.optimize import brentq
-
-        law = self.pantograph.contact_force
-        return float(brentq(lambda f: law(height + give * f) - f, 0.0, law(height)))
-
-
-class _Chain:
-    """Lumped masses in contact over a spring that does not pull."""
-
-    def __init__(self, pantograph: Pantograph, uplift: float, step: float) -> None:
-        stages = pantograph.stages
-        n = len(stages)
-        joints = np.eye(n) - np.eye(n, k=1)  # each spring between its mass and the next, the last to the base
-        self._K = joints.T @ np.diag([s.stiffness for s in stages]) @ joints
-        D = joints.T @ np.diag([s.damping for s in stages]) @ joints
-        inverse = np.diag([1 / s.mass for s in stages])
-        system = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ self._K, -inverse @ D]])
-        head = np.concatenate([np.zeros(n), -inverse[:, 0]])
-        lowest = np.concatenate([np.zeros(n), inverse[:, -1]])
-        self._advance, self._before, self._after = _exact_step(system, head, step)
-        _, early, late = _exact_step(system, lowest, step)
-        self._lifting, self._uplift = uplift * (early + late), uplift
-        self._contact = pantograph.contact_stiffness
+    def __init__(self, body: Substructure, uplift: float, step: float) -> None:
+        n, M = body.size, body.mass
+        self._body, self._uplift = body, uplift
+        self._row = body.heave(body.strips[0])
+        inverse = np.diag(1 / np.diag(M))
+        still = np.zeros(n)
+        system = np.block(
+            [[np.zeros((n, n)), np.eye(n)], [-inverse @ body.stiffness, -inverse @ body.damping]]
+        )
+        pushed = np.concatenate([still, -inverse @ self._row])
+        self._advance, self._before, self._after = _exact_step(system, pushed, step)
+        _, early, late = _exact_step(system, np.concatenate([still, inverse @ body.load]), step)
+        self._lifting = uplift * (early + late)
         self.state = np.zeros(2 * n)
 
     @property
     def heights(self) -> Floats:
-        return self.state[: self.state.size // 2]
+        return self.state[: self._body.size]
 
-    def start(self, sag: float, give: float) -> float:
+    def start(self, sag: float, compliance: float) -> float:
         """Static contact: masses, contact force and wire together."""
-        n = self.heights.size
-        system, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
-        system[:n, :n], system[0, n], right[n - 1] = self._K, 1.0, self._uplift
-        system[n, 0], system[n, n], right[n] = 1.0, -1 / self._contact - give, sag
-        solved = np.linalg.solve(system, right)
-        self.state[:n] = solved[:n]
-        return float(solved[n])
+        body = self._body
+        if not body.size:
+            return self._solved(-sag, compliance)
+        own = np.linalg.solve(body.stiffness, np.column_stack([self._uplift * body.load, self._row]))
+        force = self._solved(float(self._row @ own[:, 0]) - sag, compliance + float(self._row @ own[:, 1]))
+        self.state[: body.size] = own[:, 0] - force * own[:, 1]
+        return force
 
-    def update_contact(self, height: float, give: float, before: float) -> float:
+    def push(self, height: float, compliance: float, before: float) -> float:
+        """[N] at the step's end, on a wire ``height`` [m] high unpushed that yields by ``compliance``."""
+        n = self._body.size
         free = self._advance @ self.state + self._before * before + self._lifting
-        depth = free[0] - height
-        yielding = 1 + self._contact * (give - self._after[0])
-        force = max(0.0, float(self._contact * depth / yielding))
+        depth = float(self._row @ free[:n]) - height
+        force = self._solved(depth, compliance - float(self._row @ self._after[:n]))
         self.state = free + self._after * force
         return force
 
+    def _solved(self, depth: float, compliance: float) -> float:
+        """[N] of the law where each newton takes ``compliance`` [m] off the depth."""
+        law = self._body.contact
+        if law.points:
+            return plain(solve_points)(np.array(law.points), len(law.points), -depth, compliance)
+        return max(0.0, (law.preload + law.stiffness * depth) / (1 + law.stiffness * compliance))
 
-def _head(pantograph: DescribedPantograph, speed: float, step: float) -> _Elastic | _Chain:
-    if isinstance(pantograph, ElasticPantograph):
-        return _Elastic(pantograph, np.zeros(0), np.zeros(0))
-    if pantograph.head and pantograph.head.strips > 1:
+
+def _head(pantograph: AnyPantograph, speed: float, step: float) -> _Head:
+    body = pantograph.assemble(spatial=False)
+    if len(body.strips) > 1:
         raise InputError(
             f"{pantograph.name}: head.strips = 2: a modal run has one point of contact; leave the head out,"
             " or use simulate"
         )
-    if pantograph.mean_force is not None:
+    if pantograph.target_mean_force(speed) is not None:
         _log.warning(
             f"{pantograph.name}: a modal run takes mean_force as the uplift; with the base's spring the mean"
             " comes out a little different"
         )
-    if pantograph.contact_damping:
+    if body.contact.damping:
         raise InputError(
-            f"{pantograph.name}: contact_damping = {pantograph.contact_damping:g} N s/m: a modal run has no"
+            f"{pantograph.name}: contact_damping = {body.contact.damping:g} N s/m: a modal run has no"
             " damper in the contact; leave it out, or use simulate"
         )
-    return _Chain(pantograph, pantograph.static_uplift(speed), step)
+    return _Head(body, pantograph.static_uplift(speed), step)

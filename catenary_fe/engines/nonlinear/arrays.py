@@ -29,6 +29,7 @@ class Equations(NamedTuple):
 
     reference, place : shape (all,)
     force : shape (free,)
+    patterns : [N], shape (loads, free), of loads that vary in time
     stiffness, mass, damping : over the free coordinates, the stiffness of linear springs
     """
 
@@ -38,6 +39,7 @@ class Equations(NamedTuple):
     droppers: SpringArrays
     links: SpringArrays
     force: Floats
+    patterns: Floats
     stiffness: PackedRows
     mass: PackedRows
     damping: PackedRows

@@ -216,10 +216,13 @@ class NonlinearRun:
     def _take(self, steps: int, parts: int, scheme: Scheme, factor: Factor) -> bool:
         state, tolerance = self.state, self._engine._time.tolerance
         flat = Wires(*(array.reshape(-1) for array in state.wires))
+        begin = int(state.pantographs.step[0])
+        times = self._step * (begin + np.arange(steps * parts + 1) / parts)
+        _, signals = self._parameters.system.load(times)
         done, iterations = advance(
             scheme, self._parameters.equations, self._parameters.stations, factor, state.wires, flat,
             state.motion, state.slack, state.heads, state.pantographs, state.work, self.records, state.energy,
-            steps, parts, tolerance,
+            signals, steps, parts, tolerance,
         )  # fmt: skip
         self.iterations += iterations
         return bool(done)

@@ -42,6 +42,7 @@ class Parameters:
             ),
             droppers=_arrays(line.droppers),
             links=_arrays(line.arms),
+            patterns=np.hstack([line.load(np.zeros(1))[0], np.zeros((len(line.time_loads), more))]),
             stiffness=packed_rows(_padded(line.free(self._linear_stiffness), more, 0.0)),
             force=np.concatenate([line.gather(line.force), idle]),
             mass=packed_rows(_padded(self.mass, more, 1.0)),

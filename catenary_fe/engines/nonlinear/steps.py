@@ -255,11 +255,15 @@ def _loop(sources: str) -> Any:
         work: Work,
         records: Records,
         energy: EnergyBalance,
+        signals: Floats,
         steps: int,
         parts: int,
         tolerance: float,
     ) -> tuple[bool, int]:
-        """Take steps, each in so many parts; returns whether all converged, and the number of iterations."""
+        """Take steps, each in so many parts; returns whether all converged, and the number of iterations.
+
+        signals : shape (loads, steps * parts + 1), of loads that vary in time, from the first step's begin on
+        """
         iterations, axes = len(sources) * 0, system.droppers.pivot.shape[1]
         begin = pantographs.step[0] * parts
         for n in range(begin, begin + steps * parts):
@@ -275,8 +279,9 @@ def _loop(sources: str) -> Any:
                     system, scheme, motion, slack, energy, records.droppers[0], pantographs.step[0] + 1
                 )
                 take_links(system.links, motion.total, motion.inner)
-                for i in range(residual.size):
-                    residual[i] = system.force[i]
+                residual[:] = system.force
+                for k in range(system.patterns.shape[0]):
+                    residual += signals[k, n + 1 - begin] * system.patterns[k]
                 for i in range(system.place.size):
                     if system.place[i] >= 0:
                         residual[system.place[i]] += motion.inner[i]
@@ -303,6 +308,9 @@ def _loop(sources: str) -> Any:
             if not converged:
                 return False, iterations
             _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy)
+            for k in range(system.patterns.shape[0]):
+                mean = (signals[k, n - begin] + signals[k, n + 1 - begin]) / 2
+                energy.work[0] += mean * (system.patterns[k] * motion.before).sum()
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, pantographs, work, records)
                 pantographs.step[0] += 1

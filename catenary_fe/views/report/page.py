@@ -1,30 +1,40 @@
-"""Puts a report together from pictures, tables and the data of its curves."""
+"""Pages made of pictures, tables and the data of curves: a report, a comparison, an index of pictures."""
 
 from __future__ import annotations
 
+import base64
+import io
 import json
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.axes import Axes
 
 from catenary_fe.layout import InputError, PowerSystem
 from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_words, criteria_rows
+from catenary_fe.results.check import checks_table
+from catenary_fe.results.comparison import failed_checks, figures_table, input_differences, key_figures
+from catenary_fe.results.criteria import criteria_table
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape
-from catenary_fe.views import layout, plan, run_waves, static
-from catenary_fe.views import run as run_pictures
+from catenary_fe.views import comparison
 from catenary_fe.views.report import series, tables
-from catenary_fe.views.report.html import svg_address, template
-from catenary_fe.views.spectrum import plot_force_spectrum
-from catenary_fe.views.style import new_axes, styled
+from catenary_fe.views.run import plot_force_spectrum, run_pictures
+from catenary_fe.views.static import plot_elasticity
+from catenary_fe.views.style import new_axes, own_style, styled
+from catenary_fe.views.waves import plot_run_waves
+
+if TYPE_CHECKING:
+    from jinja2 import Environment, Template
+
+ASSETS = ("uPlot.min.css", "report.css", "uPlot.iife.min.js", "report.js", "uPlot.LICENSE")
 
 
 @styled
-def report_page(
-    run: Run,
-    shape: Shape,
-    *,
-    system: PowerSystem = "AC",
-    filter: FilterKind = "causal",
-) -> str:
+def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: FilterKind = "causal") -> str:
     """HTML of a run's report, complete in itself.
 
     shape : the static shape that the run started from
@@ -40,6 +50,7 @@ def report_page(
         motion = None
     rows: list[Criterion] = [] if run.partial else criteria_rows(run, system, filter=filter)
     governing = tables.governing_figures(run, filter, rows)
+    checks = checks_in_words(run.checks)
     spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
@@ -49,12 +60,12 @@ def report_page(
         "governing": tables.why_it_governs(run, governing, rows),
         "versions": json.loads(run.data.attrs["versions"]),
         "keys": tables.key_figures(run, governing),
-        "criteria": tables.criteria_table(rows, system),
+        "criteria": tables.Table(f"Limits of {system}", *criteria_table(rows)),
         "verdict": f"{system}: {criteria_in_words(rows)}." if rows else f"Not judged. {run.partial}.",
         "bad": any(row.passed is False for row in rows),
-        "checks_verdict": _sentence(checks_in_words(run.checks)),
+        "checks_verdict": checks[0].upper() + checks[1:] + ".",
         "warnings": run.warnings,
-        "checks": tables.checks_table(run),
+        "checks": tables.Table("", *checks_table(run.checks)),
         "motion": motion is not None,
         "statistics": tables.statistics_table(run, filter),
         "by_span": tables.span_table(run, filter),
@@ -64,7 +75,7 @@ def report_page(
         "whole_schedule": tables.schedule_table(shape, None),
         "supports": tables.support_table(shape),
         "inputs": tables.input_tables(run),
-        "pictures": _pictures(run, shape, filter, waves=motion is not None),
+        "pictures": _pictures(run, shape, filter, moving=motion is not None),
         "data": {
             "force": series.force_chart(run, filter),
             "uplift": series.uplift_chart(run),
@@ -76,10 +87,6 @@ def report_page(
     return template("report.html.j2").render(content)
 
 
-def _sentence(words: str) -> str:
-    return f"{words[0].upper()}{words[1:]}."
-
-
 def _lead(run: Run) -> str:
     names = [str(name) for name in run.data["pantograph"].values]
     spans = ", ".join(map(str, run.evaluated_spans))
@@ -89,26 +96,86 @@ def _lead(run: Run) -> str:
     )
 
 
-def _pictures(run: Run, shape: Shape, filter: FilterKind, *, waves: bool) -> dict[str, str]:
+def _pictures(run: Run, shape: Shape, filter: FilterKind, *, moving: bool) -> dict[str, str]:
     """Addresses of the pictures by name, the pictures inside them."""
-    pictures = {
-        "force": svg_address(run_pictures.plot_contact_force(run, filter=filter)),
-        "uplift": svg_address(run_pictures.plot_support_uplift(run)),
-        "droppers": svg_address(run_pictures.plot_dropper_forces(run)),
-        "layout": svg_address(layout.plot_layout(shape.catenary, shape)),
-        "shape": svg_address(static.plot_static_shape(shape)),
-    }
-    if run.has_energy:
-        pictures["energy"] = svg_address(run_pictures.plot_energy(run))
+    pictures = {name: svg_address(ax) for name, ax in run_pictures(run, shape, filter)}
     if run.reached:
         pictures["spectrum"] = svg_address(plot_force_spectrum(run))
-    if shape.catenary.is_spatial:
-        width = plan.head_width(run.pantographs)
-        pictures["plan"] = svg_address(plan.plot_plan(shape, head_width=width))
     if curve := run.elasticity:
-        pictures["elasticity"] = svg_address(static.plot_elasticity(curve))
-    if waves:
-        pictures["waves"] = svg_address(
-            run_waves.plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150
-        )
+        pictures["elasticity"] = svg_address(plot_elasticity(curve))
+    if moving:
+        pictures["waves"] = svg_address(plot_run_waves(run, ax=new_axes(None, (11.0, 5.4))), dpi=150)
     return pictures
+
+
+@styled
+def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: FilterKind = "causal") -> str:
+    """HTML of a comparison, complete in itself. Raises InputError for fewer than two runs."""
+    columns = key_figures(runs, labels, filter)
+    differences = [(d.name, *d.values) for d in input_differences(runs)]
+    content = {
+        "title": " and ".join(labels),
+        "inputs": tables.Table("", ("input", *labels), differences),
+        "figures": tables.Table("", *figures_table(columns)),
+        "warnings": failed_checks(runs, labels),
+        "pictures": {
+            "force": svg_address(comparison.plot_force_comparison(runs, labels, filter=filter)),
+            "uplift": svg_address(comparison.plot_uplift_comparison(runs, labels)),
+        },
+    }
+    return template("comparison.html.j2").render(content)
+
+
+@dataclass(frozen=True)
+class PageEntry:
+    """One figure of the page.
+
+    name : of its script and its picture, without ending
+    title : one line
+    caption, numbers : what it says; ``numbers`` by name
+    failure : why there is no picture, or nothing
+    """
+
+    name: str
+    title: str
+    caption: str = ""
+    numbers: dict[str, float] = field(default_factory=dict)
+    failure: str = ""
+
+
+def index_page(title: str, entries: Sequence[PageEntry]) -> str:
+    """HTML that shows each figure, or names it and why it failed; its links are relative."""
+    failed = [entry for entry in entries if entry.failure]
+    return template("index.html.j2").render(title=title, entries=entries, failed=failed) + "\n"
+
+
+def svg_address(ax: Axes, dpi: int = 100) -> str:
+    """A data address of the picture as SVG: sharp on paper, and the same bytes each time.
+
+    dpi : of what is a bitmap inside it
+    """
+    figure, file = ax.get_figure(root=True), io.BytesIO()
+    assert figure is not None
+    with own_style({"path.simplify_threshold": 0.3}):
+        figure.savefig(file, format="svg", dpi=dpi, metadata={"Date": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(file.getvalue()).decode("ascii")
+
+
+def template(name: str) -> Template:
+    """A template by its file's name; ``assets`` in it are style and scripts as they are."""
+    return _environment().get_template(name)
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    folder = resources.files(__package__).joinpath("assets")
+    environment = Environment(
+        loader=PackageLoader(__package__, "assets"), autoescape=True, undefined=StrictUndefined
+    )
+    environment.globals["assets"] = {
+        name: Markup(folder.joinpath(name).read_text(encoding="utf-8")) for name in ASSETS
+    }
+    return environment

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.views.scene import MASS_GAP, Scene, scene
-from catenary_fe.views.style import PANTOGRAPHS, sequence, wire_colour
+from catenary_fe.views.film import MASS_GAP, Scene, scene
+from catenary_fe.views.style import pantograph_colour, sequence, wire_colour
 
 Floats = NDArray[np.float64]
 _POINTS = 8000  # of a curve
@@ -29,14 +29,14 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
     names, statistics = run.data["pantograph"].values, run.figures(filter)
     series = []
     for i, name in enumerate(names):
-        colour = PANTOGRAPHS[i % len(PANTOGRAPHS)]
+        colour = pantograph_colour(i)
         for label, values, faint in (("unfiltered", raw[i], True), ("0 to 20 Hz", filtered[i], False)):
             on_axis = np.interp(x, positions[i], values, left=np.nan, right=np.nan)
             shown = not faint or len(names) == 1
             series.append({"label": f"{name}, {label}", "colour": colour, "faint": faint, "shown": shown,
                            "values": _numbers(on_axis, 1)})  # fmt: skip
     lines = [
-        {"value": round(value, 2), "colour": PANTOGRAPHS[i % len(PANTOGRAPHS)], "dashed": dashed}
+        {"value": round(value, 2), "colour": pantograph_colour(i), "dashed": dashed}
         for i, s in enumerate(statistics)
         if s
         for value, dashed in ((s.mean, False), (s.statistical_max, True), (s.statistical_min, True))
@@ -95,7 +95,7 @@ def motion(run: Run) -> dict[str, Any]:
         "pantographs": [
             {
                 "name": str(name),
-                "colour": PANTOGRAPHS[i % len(PANTOGRAPHS)],
+                "colour": pantograph_colour(i),
                 "x": _numbers(seen.pantograph_x[i], 3),
                 "rest": _numbers(seen.rest[i], 5),
                 "masses": [_numbers(m, 5) for m in seen.masses[i]],

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted
-from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing, labels
-from catenary_fe.results.csv_files import cell, common_name, decimals_of
+from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
+from catenary_fe.results.export import cell, common_name
+from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.statics import Shape
 
@@ -57,73 +58,38 @@ def key_figures(run: Run, s: ForceStatistics | None) -> list[dict[str, str]]:
     """The governing pantograph's figures to see at one glance, and the largest uplift."""
     if s is None:
         return [{"name": "evaluated spans", "value": "not passed"}]
+    uplift = UPLIFT.shown(run.largest_support_uplift())
     return [
-        {"name": "mean force", "value": f"{s.mean:.1f} N"},
-        {"name": "standard deviation", "value": f"{s.std:.1f} N"},
-        {"name": "actual minimum, maximum", "value": f"{s.min:.0f}, {s.max:.0f} N"},
-        {"name": "contact loss over 5 ms", "value": f"{100 * s.long_contact_loss:.2f} %"},
-        {"name": "uplift at a support", "value": f"{1e3 * run.largest_support_uplift():.1f} mm"},
+        *({"name": FORCE[own].name, "value": FORCE[own].text(s)} for own in ("mean", "std")),
+        {"name": "actual minimum, maximum", "value": f"{FORCE['min'].text(s)}, {FORCE['max'].text(s)}"},
+        {"name": FORCE["long_contact_loss"].name, "value": FORCE["long_contact_loss"].text(s)},
+        {"name": UPLIFT.name, "value": f"{UPLIFT.number(uplift)} {UPLIFT.unit}"},
     ]
 
 
 def statistics_table(run: Run, filter: FilterKind) -> Table:
     """Statistics of all pantographs over the evaluated spans."""
-    rows: tuple[tuple[str, Callable[[ForceStatistics], str]], ...] = (
-        ("mean force Fₘ (N)", lambda s: f"{s.mean:.1f}"),
-        ("standard deviation σ (N)", lambda s: f"{s.std:.1f}"),
-        ("of which 0 to 5 Hz (N)", lambda s: f"{s.std_0_5:.1f}"),
-        ("of which 5 to 20 Hz (N)", lambda s: f"{s.std_5_20:.1f}"),
-        ("statistical maximum Fₘ + 3σ (N)", lambda s: f"{s.statistical_max:.1f}"),
-        ("statistical minimum Fₘ − 3σ (N)", lambda s: f"{s.statistical_min:.1f}"),
-        ("actual maximum (N)", lambda s: f"{s.max:.1f}"),
-        ("actual minimum (N)", lambda s: f"{s.min:.1f}"),
-        ("contact loss, however short (% of the time)", lambda s: f"{100 * s.contact_loss:.2f}"),
-        ("contact loss over 5 ms (% of the time)", lambda s: f"{100 * s.long_contact_loss:.2f}"),
-        ("number of losses over 5 ms", lambda s: str(s.long_losses)),
-        ("longest loss (ms)", lambda s: f"{1e3 * s.longest_loss:.1f}"),
-        ("range of the contact point (mm)", lambda s: f"{1e3 * s.contact_point_range:.1f}"),
-    )
-    found = run.figures(filter)
     spans = ", ".join(map(str, run.evaluated_spans))
     caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
     names = [str(name) for name in run.data["pantograph"].values]
-    cells = [(name, *(text(s) if s else "–" for s in found)) for name, text in rows]
-    return Table(caption, ("", *names), cells)
+    columns = [s.as_dict() if s else {} for s in run.figures(filter)]
+    return Table(caption, ("", *names), figure_rows(FORCE.values(), columns))
 
 
 def span_table(run: Run, filter: FilterKind) -> Table:
     """Contact force span by span: how far single spans are from the evaluated ones together."""
     by_span = run.statistics_by_span(filter)
     names = [str(name) for name in run.data["pantograph"].values]
-    quantities: tuple[tuple[str, Callable[[ForceStatistics], float]], ...] = (
-        ("mean (N)", lambda s: s.mean),
-        ("σ (N)", lambda s: s.std),
-        ("maximum (N)", lambda s: s.max),
-        ("minimum (N)", lambda s: s.min),
-    )
+    shown = {own: FORCE[own] for own in ("mean", "std", "max", "min")}
     several = len(names) > 1
-    columns = [f"{name}: {text}" if several else text for name in names for text, _ in quantities]
+    columns = [
+        f"{name}: {q.short_label}" if several else q.short_label for name in names for q in shown.values()
+    ]
     cells = [
-        (str(span), *(f"{value(s):.1f}" for s in figures for _, value in quantities))
+        (str(span), *(q.number(getattr(s, own)) for s in figures for own, q in shown.items()))
         for span, figures in by_span.items()
     ]
     return Table("Contact force span by span", ("span", *columns), cells)
-
-
-def criteria_table(rows: Sequence[Criterion], system: str) -> Table:
-    """A run's figures against the limits of its system, each with what the limit rests on."""
-    cells = [
-        (label, row.value_text, row.limit_text, row.verdict, row.source)
-        for label, row in zip(labels(rows), rows, strict=True)
-    ]
-    columns = ("criterion", "value", "limit", "verdict", "source of the limit")
-    return Table(f"Limits of {system}", columns, cells)
-
-
-def checks_table(run: Run) -> Table:
-    """The quality checks with this run's numbers."""
-    rows = [(c.name, c.value_text, c.bound_text, c.verdict) for c in run.checks]
-    return Table("", ("check", "this run", "bound", "verdict"), rows)
 
 
 def uplift_table(run: Run) -> Table:
@@ -154,50 +120,44 @@ def slack_table(run: Run) -> Table:
 def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
     """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
     caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
-    schedule = [row for row in shape.dropper_schedule() if spans is None or row.span in spans]
-    columns = ["span", "dropper", "chainage (m)", "in the span at (m)", "length (m)", "installed (m)",
-               "force (N)", "height error (mm)"]  # fmt: skip
-    rows = [
-        [
-            str(row.span),
-            str(row.dropper),
-            f"{row.chainage_m:.3f}",
-            f"{row.position_m:.3f}",
-            f"{row.length_m:.4f}",
-            f"{row.installed_length_m:.4f}",
-            f"{row.force_N:.1f}",
-            f"{round(row.contact_wire_height_error_mm, 2) + 0.0:.2f}",
-        ]
-        for row in schedule
-    ]
-    for name, text in (("hangs on", "hangs_on"), ("holds contact wire", "contact_wire")):
-        values = [str(getattr(row, text)) for row in schedule]
-        if len(set(values)) > 1:
-            columns.append(name)
-            for cells, value in zip(rows, values, strict=True):
-                cells.append(value)
-    return Table(f"Dropper schedule, {caption}", columns, rows)
+    rows = [row.as_dict() for row in shape.dropper_schedule() if spans is None or row.span in spans]
+    columns = {
+        "span": "span", "dropper": "dropper", "chainage_m": "chainage (m)",
+        "position_m": "in the span at (m)", "length_m": "length (m)", "installed_length_m": "installed (m)",
+        "force_N": "force (N)", "contact_wire_height_error_mm": "height error (mm)",
+    }  # fmt: skip
+    wires = {"hangs_on": "hangs on", "contact_wire": "holds contact wire"}
+    columns |= {key: name for key, name in wires.items() if len({row.get(key) for row in rows}) > 1}
+    return Table(f"Dropper schedule, {caption}", tuple(columns.values()), _cells(rows, columns))
 
 
 def support_table(shape: Shape) -> Table:
     """Where the wires are at each support, and what it and its steady arm hold."""
     columns = {
-        "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
+        "support": "support", "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
         "contact_wire_height_m": "contact wire at (m)", "system_height_m": "system height (m)",
         "arm_vertical_N": "arm, up (N)", "arm_lateral_N": "arm, left (N)",
         "messenger_vertical_N": "messenger wire, up (N)", "messenger_lateral_N": "messenger wire, left (N)",
         "messenger_wire_tension_kN": "its tension (kN)",
     }  # fmt: skip
-    rows = []
-    for support in shape.support_schedule():
-        flat = support.as_dict()
-        cells = [str(support.support)]
-        for key in columns:
-            found = [value for name, value in flat.items() if common_name(name) == key and value is not None]
-            digits = decimals_of(key)
-            cells.append(", ".join(str(cell(value, digits)) for value in found) or "–")
-        rows.append(cells)
-    return Table("Supports; of two contact wires the right one first", ("support", *columns.values()), rows)
+    cells = _cells([row.as_dict() for row in shape.support_schedule()], columns)
+    return Table("Supports; of two contact wires the right one first", tuple(columns.values()), cells)
+
+
+def _cells(rows: Sequence[Mapping[str, Any]], keys: Iterable[str]) -> list[list[str]]:
+    """Texts of some columns of a schedule, those of several contact wires together."""
+    return [
+        [
+            ", ".join(
+                str(cell(value, decimals_of(key)))
+                for name, value in row.items()
+                if common_name(name) == key and value is not None
+            )
+            or "–"
+            for key in keys
+        ]
+        for row in rows
+    ]
 
 
 def input_tables(run: Run) -> list[Table]:
@@ -213,25 +173,20 @@ def input_tables(run: Run) -> list[Table]:
 
 def _line_table(catenary: Catenary) -> Table:
     lengths = [span.length for span in catenary.spans]
-    counts = [len(span.droppers) for span in catenary.spans]
+    counts, damping = [len(span.droppers) for span in catenary.spans], catenary.damping
+    stiffnesses = _range([dropper.stiffness / 1e3 for dropper in catenary.droppers])
     rows = [
         ("source", catenary.source or "not given"),
         ("spans", f"{len(lengths)} of {_range(lengths)} m, {catenary.length:g} m in all"),
-        (
-            "droppers",
-            f"{_range(counts)} in a span, {_range([d.stiffness / 1e3 for d in catenary.droppers])} kN/m",
-        ),
+        ("droppers", f"{_range(counts)} in a span, {stiffnesses} kN/m"),
         ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
         ("contact wire height", f"{catenary.contact_wire_height:g} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_height)} m"),
         ("steady arms", _arms(catenary)),
-        (
-            "damping of wires and taut droppers",
-            f"α = {catenary.damping.alpha:g} 1/s, β = {catenary.damping.beta:g} s",
-        ),
+        ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
-        *_sideways(catenary),
+        *_lateral_rows(catenary),
     ]
     return Table("Line", ("", "value"), rows)
 
@@ -248,7 +203,7 @@ def _arms(catenary: Catenary) -> str:
     return "; ".join(kinds) or "none"
 
 
-def _sideways(catenary: Catenary) -> list[tuple[str, str]]:
+def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     """What leaves the vertical plane, where anything does."""
     rows = []
     if np.any(catenary.staggers):

@@ -1,28 +1,82 @@
-"""How the cases of a sweep did: checks, criteria and warnings, by case and counted."""
+"""How a run, or the cases of a sweep, did: checks, criteria and warnings, by case and counted."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from catenary_fe.cli.terminal import say
+from catenary_fe.cli.folder import folder_of, read_record
+from catenary_fe.cli.terminal import progress_bar, say
 from catenary_fe.layout import PowerSystem
+from catenary_fe.results.quantities import UPLIFT
+from catenary_fe.results.signal import FilterKind
 
 if TYPE_CHECKING:
-    from catenary_fe.results import Criterion, ForceStatistics
+    from catenary_fe.results import Criterion, Run
+    from catenary_fe.statics import Shape
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
     from catenary_fe.studies.sweep_store import Record
 
 _MOST = 5  # warnings by themselves
 
 
+def evaluated(
+    run: Run, filter: FilterKind, system: PowerSystem | None
+) -> tuple[dict[str, Any], list[Criterion]]:
+    """Summary of a run and, where a system is given, its criteria, which the summary holds too."""
+    from catenary_fe.results import criteria_rows, excess, governing
+
+    summary = run.summary(filter=filter)
+    if system is None:
+        return summary, []
+    rows = criteria_rows(run, system, filter=filter)
+    summary["governing_pantograph"] = governing(run.figures(filter), excess(rows))
+    summary["criteria_system"] = system
+    summary["criteria"] = [row.as_dict() for row in rows]
+    return summary, rows
+
+
+def with_elasticity(run: Run, shape: Shape, quiet: bool) -> Run:
+    """The run with the elasticity of its evaluated spans."""
+    from catenary_fe.statics.elasticity import elasticity
+
+    with progress_bar("elasticity", not quiet) as progress:
+        return run.with_elasticity(elasticity(shape, progress=progress))
+
+
+def kept_evaluation(folder: str | Path) -> tuple[FilterKind, PowerSystem | None]:
+    """How the run in a folder was evaluated, by its summary: the filter, and the system if it was judged.
+
+    Raises InputError where the summary is damaged.
+    """
+    said = read_record(folder_of(folder) / "summary.json")
+    kinds: tuple[FilterKind, ...] = get_args(FilterKind)
+    systems: tuple[PowerSystem, ...] = get_args(PowerSystem)
+    return (
+        next((kind for kind in kinds if kind == said.get("filter")), "causal"),
+        next((system for system in systems if system == said.get("criteria_system")), None),
+    )
+
+
+def exit_code(rows: Sequence[Criterion]) -> int:
+    """1 where a criterion is missed, which is said on standard error; else 0."""
+    from catenary_fe.results import labels, missed
+
+    misses = missed(rows)
+    for row, label in zip(rows, labels(rows), strict=True):
+        if row in misses:
+            click.echo(f"missed: {label}: {row.value_text}, must be {row.limit_text}", err=True)
+    return 1 if misses else 0
+
+
 @dataclass(frozen=True)
 class Verdict:
-    """What there is to say of one case.
+    """Checks, criteria and warnings of one case.
 
     values : what tells it from the others
     criteria : of its system; empty where it was not judged, or failed
@@ -51,7 +105,7 @@ class Verdict:
 
 def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:
     """The verdict on a case, by what is kept of its run."""
-    from catenary_fe.results import ForceStatistics, excess, governing
+    from catenary_fe.results import ForceStatistics, KeyFigures, excess, governing, judge
     from catenary_fe.results.check import FAILED
     from catenary_fe.studies.sweep import BrokenCase
 
@@ -59,7 +113,14 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         return Verdict(record["values"], error=record["error"])
     summary = record["summary"]
     statistics = [ForceStatistics.from_dict(each, summary["filter"]) for each in summary["pantographs"]]
-    criteria = _criteria(summary, statistics, case, system) if system else []
+    figures = KeyFigures(
+        speed=case.speed,
+        catenary=case.catenary,
+        pantographs=case.pantographs,
+        statistics=statistics,
+        uplift={int(n): UPLIFT.si(lift) for n, lift in summary["support_uplift_mm"].items()},
+    )
+    criteria = judge(figures, system) if system else []
     failed = [text.removeprefix(FAILED) for text in summary["warnings"] if text.startswith(FAILED)]
     return Verdict(
         record["values"],
@@ -68,21 +129,6 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         [text for text in summary["warnings"] if not text.startswith(FAILED)],
         governing(statistics, excess(criteria)),
     )
-
-
-def _criteria(
-    summary: dict[str, Any], statistics: list[ForceStatistics], case: SweepCase, system: PowerSystem
-) -> list[Criterion]:
-    from catenary_fe.results import KeyFigures, judge
-
-    figures = KeyFigures(
-        speed=case.speed,
-        catenary=case.catenary,
-        pantographs=case.pantographs,
-        statistics=statistics,
-        uplift={int(support): lift / 1e3 for support, lift in summary["support_uplift_mm"].items()},
-    )
-    return judge(figures, system)
 
 
 def in_words(verdicts: Sequence[Verdict], system: PowerSystem | None) -> list[str]:
@@ -122,7 +168,7 @@ def warn_once(verdicts: Sequence[Verdict]) -> None:
         say("warning", f"and {len(counted) - _MOST} others: all are in remarks.csv", "yellow")
 
 
-def exit_code(verdicts: Sequence[Verdict], system: PowerSystem | None) -> int:
+def sweep_exit_code(verdicts: Sequence[Verdict], system: PowerSystem | None) -> int:
     """1 where a case misses a criterion, which is said on standard error; else 0."""
     misses = [[row.name for row in v.missed] for v in verdicts if v.missed]
     if misses:
@@ -134,7 +180,7 @@ def exit_code(verdicts: Sequence[Verdict], system: PowerSystem | None) -> int:
 
 
 def remarks(verdicts: Sequence[Verdict]) -> Iterator[dict[str, Any]]:
-    """Rows of a table: all that is to be said of the cases, in words."""
+    """Rows of a table: all remarks on the cases, in words."""
     from catenary_fe.results import labels
 
     for verdict in verdicts:
