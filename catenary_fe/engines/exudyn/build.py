@@ -154,6 +154,12 @@ class ExudynModel:
             for load, share in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", share * float(uplift))
 
+    def load(self, time: float) -> None:
+        """Give the loads of the line that vary in time their values at a time [s]."""
+        if self.system.time_loads:
+            force = self.system.force + self.system.varying(time)
+            self.mbs.SetObjectParameter(self.loads, "forceVector", force)
+
     def release(self) -> None:
         """Free the memory of ``mbs``; nothing of the model may be used afterwards."""
         release(self.mbs)

@@ -101,6 +101,7 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
             q[parts.index(mbs)] = where.heights
     else:
         q[: system.place.size] = 0.0
+    model.load(0.0)
     model.lift(uplifts)
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
     _set_state(model, q, np.zeros_like(q))
@@ -133,6 +134,7 @@ def _integrate(
             count = round(end / step)
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
+            model.load(end)
             contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
@@ -209,7 +211,8 @@ class _Recorder:
         if n % self._tension_every == 0:
             self._tension.read(self._step * n, q)
         if self._balance:
-            self._balance.record(n, q, v, self._positions(n), forces, self._dropper[:, n])
+            driving = self._balance.driving(self._step * n, q.size, self._positions(n), forces)
+            self._balance.record(n, q, v, driving, self._dropper[:, n])
         self.done = n
 
     def note_smaller_steps(self, parts: int) -> None:
@@ -266,7 +269,7 @@ class _Recorder:
 
 
 class _EnergyBalance:
-    """Energy, work of the contacts and loss in the dampers, step by step.
+    """Energy, work of contacts and loads in time, and loss in the dampers, step by step.
 
     Kinetic and stored energy are those of line and pantographs; the potential of constant forces (weight,
     tensions, preloads, uplift) counts as stored. Work and loss of a step are those of the trapezoidal rule:
@@ -300,19 +303,17 @@ class _EnergyBalance:
         n: int,
         q: Floats,
         v: Floats,
-        positions: Floats,
-        forces: list[list[float]],
+        driving: Floats,
         droppers: Floats,
     ) -> None:
         """Take down step ``n``'s end.
 
-        positions : [m] of the pantographs
-        forces : [N] of each pantograph's contacts
+        driving : [N], shape (coordinates,), forces whose work is counted
         droppers : [N], shape (droppers,), tensions
         """
         span = self._droppers.span(self._model.system.reference + q[: self._line])
         drag, length = droppers - self._droppers.tension(span), np.linalg.norm(span, axis=1)
-        now = (q, self._contact_forces(q.size, positions, forces), self._drag(v), drag, length)
+        now = (q, driving, self._drag(v), drag, length)
         if self._before is not None:
             before = self._before
             moved = q - before[0]
@@ -323,9 +324,14 @@ class _EnergyBalance:
         if n % self.every == 0:
             self._energy.append(self._energy_of(q, v))
 
-    def _contact_forces(self, size: int, positions: Floats, forces: list[list[float]]) -> Floats:
-        """[N], shape (coordinates,): generalised forces of the contacts."""
+    def driving(self, time: float, size: int, positions: Floats, forces: list[list[float]]) -> Floats:
+        """[N], shape (coordinates,): generalised forces of the contacts, and loads that vary in time [s].
+
+        positions : [m] of the pantographs
+        forces : [N] of each pantograph's contacts
+        """
         found, paths = np.zeros(size), self._model.system.contact_paths
+        found[: self._line] = self._model.system.varying(time)
         for i, (parts, body, index, _) in enumerate(self._bodies):
             for contact, force in zip(parts.contacts, forces[i], strict=True):
                 path = paths[contact.wire]
