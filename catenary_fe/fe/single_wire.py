@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.assembly import scattered
-from catenary_fe.fe.cable import Cables, mass_blocks
+from catenary_fe.fe.cable import Cables, mass_blocks, scattered
 from catenary_fe.fe.installation import WireLine
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
@@ -123,13 +122,6 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
     for part in parts:
         if part.problem.tensioned:
             force[part.at(part.x[-1], 0)] += part.problem.wire.tension
-    dof = np.arange(size)
-    held = [i for part in parts for i in part.held()]
-    moves = np.setdiff1d(dof, held)
-    station = np.concatenate([np.repeat(part.x, WIDTH) for part in parts])
-    order = moves[np.argsort(station[moves], kind="stable")]
-    dof = np.full(size, FIXED, dtype=np.int64)
-    dof[order] = np.arange(order.size)
     if pair is not None:
         for part, sign in zip(parts, (-1.0, 1.0), strict=True):
             force[part.at(pair.position, UP)] += sign * pair.preload
@@ -137,7 +129,7 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
     return System(
         axes=AXES,
         reference=reference,
-        place=dof,
+        place=_places(parts, size),
         first=first,
         cables=Cables(lengths, EA, of_wires("bending_stiffness"), -of_wires("tension") / EA),
         mass_per_length=per_length,
@@ -156,6 +148,15 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
         wires=tuple(_nodes(part, number, pair) for number, part in enumerate(parts)),
         contact_wire_height=0.0,
     )
+
+
+def _places(parts: Sequence[_Part], size: int) -> Integers:
+    """Numbers of the free coordinates in the order of their stations."""
+    moves = np.setdiff1d(np.arange(size), [i for part in parts for i in part.held()])
+    station = np.concatenate([np.repeat(part.x, WIDTH) for part in parts])
+    dof = np.full(size, FIXED, dtype=np.int64)
+    dof[moves[np.argsort(station[moves], kind="stable")]] = np.arange(moves.size)
+    return dof
 
 
 def _nodes(part: _Part, number: int, pair: WirePair | None) -> WireNodes:

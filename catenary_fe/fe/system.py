@@ -17,29 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.assembly import scattered
 from catenary_fe.fe.cable import (
     Cables,
     hermite,
     inner_forces,
-    mass_blocks,
     mean_stretch,
+    scattered,
     strain_energy,
     tangent_blocks,
 )
 from catenary_fe.fe.contact import ContactPath
-from catenary_fe.fe.installation import (
-    Installation,
-    curve_pulls,
-    dropper_damping,
-    element_pulls,
-    element_values,
-    point_masses,
-)
-from catenary_fe.fe.mesh import Mesh
-from catenary_fe.fe.restraints import Held
 from catenary_fe.fe.spring import FIXED, Springs
-from catenary_fe.layout import GRAVITY, Catenary
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -374,92 +362,3 @@ class System:
     def elements(self) -> Integers:
         """Shape (elements, 4 * axes): coordinates of each cable element."""
         return self.first[:, None] + np.arange(4 * self.axes)
-
-
-def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> System:
-    """The line as it was installed, as one system."""
-    from scipy.sparse import csr_matrix, diags
-
-    lines, axes = installation.lines, installation.axes
-    width, first_nodes = 2 * axes, mesh.first_nodes
-    size = width * int(first_nodes[-1])
-    first = np.concatenate(
-        [width * (n + np.arange(line.lengths.size)) for n, line in zip(first_nodes, lines, strict=False)]
-    )
-    lengths = np.concatenate([line.lengths for line in lines])
-    per_length, EA, EI, tension = (
-        element_values(catenary, mesh, name)
-        for name in ("mass_per_length", "axial_stiffness", "bending_stiffness", "tension")
-    )
-    index, blocks = first[:, None] + np.arange(2 * width), mass_blocks(lengths, per_length, axes)
-    wire_mass = scattered([(index, blocks)], size)
-    masses, hanging = point_masses(catenary, mesh, installation.dropper_lengths)
-    ups, points = np.zeros((size // width, width)), np.zeros((size // width, width))
-    ups[:, axes - 1], points[:, :axes] = 1.0, 1.0
-    force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
-    if axes == 3:
-        pulls = np.concatenate(curve_pulls(catenary, mesh))[:, None, None]
-        force += scattered([(index, blocks * pulls)], size) @ np.roll(ups, -1, axis=1).ravel()
-    held = Held(catenary, mesh, installation, size)
-    return System(
-        axes=axes,
-        reference=installation.coordinates(),
-        place=held.place(lines),
-        first=first,
-        cables=Cables(lengths, EA, EI, -tension / EA),
-        mass_per_length=per_length,
-        element_mass=blocks,
-        wire_mass=wire_mass,
-        mass=(wire_mass + diags(np.repeat(masses, width) * points.ravel())).tocsr(),
-        droppers=_droppers(catenary, mesh, installation),
-        arms=held.bars(),
-        ground_stiffness=held.stiffness,
-        ground_damping=held.damping,
-        linear_stiffness=csr_matrix((size, size)),
-        linear_damping=csr_matrix((size, size)),
-        force=force + held.force + installation.balance,
-        alpha=float(catenary.damping.alpha),
-        beta=float(catenary.damping.beta),
-        wires=_wires(catenary, mesh),
-        contact_wire_height=catenary.contact_wire_height,
-    )
-
-
-def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
-    found = []
-    pulls = element_pulls(catenary, mesh)
-    for n, (first, wire, pull) in enumerate(zip(mesh.first_nodes, mesh.wires, pulls, strict=False)):
-        clamps = [mesh.lower.node[mesh.lower.on(n)], mesh.upper.node[mesh.upper.on(n)]]
-        clamps += [wire.supports, np.array([0, wire.x.size - 1])]
-        if n == mesh.contact_wires:
-            clamps.append(mesh.stitch_ends.ravel())
-        fixed = np.unique(np.concatenate(clamps))
-        contact = n < mesh.contact_wires
-        found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))
-    return tuple(found)
-
-
-def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:
-    """The installation with the forces that keep its wires exactly where their lines are."""
-    none = np.zeros_like(installation.balance)
-    system = assemble(catenary, mesh, replace(installation, balance=none))
-    residual = system.gather(system.out_of_balance(none))
-    balance = none.copy()
-    moves = np.flatnonzero(system.place >= 0)
-    _, one_each = np.unique(system.place[moves], return_index=True)
-    at = moves[one_each]  # of coordinates that follow another one, the leading one
-    balance[at] = -residual[system.place[at]]
-    return replace(installation, balance=balance)
-
-
-def _droppers(catenary: Catenary, mesh: Mesh, installation: Installation) -> Springs:
-    width, count = 2 * installation.axes, len(catenary.droppers)
-    return Springs(
-        first=width * mesh.nodes(mesh.lower).astype(np.int64),
-        last=width * mesh.nodes(mesh.upper).astype(np.int64),
-        pivot=np.zeros((count, installation.axes)),
-        length=np.asarray(installation.dropper_lengths, dtype=float),
-        stiffness=np.array([d.stiffness for d in catenary.droppers], dtype=float),
-        damping=np.asarray(dropper_damping(catenary), dtype=float),
-        pulls_only=True,
-    )

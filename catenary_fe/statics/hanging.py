@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.assembly import balanced
+from catenary_fe.fe.cable import scattered
 from catenary_fe.fe.installation import Installation, curve_pulls
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
-from catenary_fe.fe.system import balanced
 from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
 from catenary_fe.statics.installed import installed_lines
 from catenary_fe.statics.rules import check_links, dropper_names

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.fe.assembly import assemble
 from catenary_fe.fe.installation import Installation
 from catenary_fe.fe.mesh import Mesh, MeshSettings
-from catenary_fe.fe.system import System, assemble
+from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.arguments import on_the_wire
 from catenary_fe.layout.frozen import changed_by_copy

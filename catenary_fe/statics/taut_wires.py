@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.assembly import scattered
+from catenary_fe.fe.cable import scattered
 from catenary_fe.fe.installation import element_pulls, element_values
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import Catenary

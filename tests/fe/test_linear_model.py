@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
+from catenary_fe.fe.assembly import assemble
 from catenary_fe.fe.cable import hermite
 from catenary_fe.fe.reduction import linear_model
-from catenary_fe.fe.system import assemble
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,8 @@ from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
 from catenary_fe.engines.exudyn.solver import solve_static
-from catenary_fe.fe.system import System, assemble
+from catenary_fe.fe.assembly import assemble
+from catenary_fe.fe.system import System
 
 LAYOUTS = sorted((Path(__file__).parents[2] / "models" / "layouts").glob("*.toml"))
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import catenary_fe as cf
-from catenary_fe.fe.system import assemble
+from catenary_fe.fe.assembly import assemble
 
 LAYOUTS = Path(__file__).parents[2] / "models" / "layouts"
 FILE = Path(__file__).with_name("golden.json")

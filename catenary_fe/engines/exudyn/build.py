@@ -154,7 +154,7 @@ class ExudynModel:
             for load, share in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", share * float(uplift))
 
-    def load(self, time: float) -> None:
+    def load_at(self, time: float) -> None:
         """Give the loads of the line that vary in time their values at a time [s]."""
         if self.system.time_loads:
             force = self.system.force + self.system.varying(time)

@@ -101,7 +101,7 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
             q[parts.index(mbs)] = where.heights
     else:
         q[: system.place.size] = 0.0
-    model.load(0.0)
+    model.load_at(0.0)
     model.lift(uplifts)
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
     _set_state(model, q, np.zeros_like(q))
@@ -134,7 +134,7 @@ def _integrate(
             count = round(end / step)
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
-            model.load(end)
+            model.load_at(end)
             contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)

@@ -162,7 +162,6 @@ def _loops(sources: str) -> tuple[Any, Any]:
         records: Records,
         steps: int,
     ) -> int:
-        groups = flat.x.size // 4
         for _ in range(steps):
             predict(scheme, operator.beta, flat)
             flat.x[:] = line.load
@@ -171,8 +170,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
             couple_stretch_one(line, flat.q, work.tension[0], flat.x)
-            lower_one(operator.lower, flat.x, 0, groups)
-            upper_one(operator.upper, operator.inverse, flat.x, 0, groups)
+            lower_one(operator.lower, flat.x, 0, flat.x.size // 4)
+            upper_one(operator.upper, operator.inverse, flat.x, 0, flat.x.size // 4)
             _finish(scheme, line, wires, heads, pantographs, work, records)
         return len(sources)
 

@@ -59,8 +59,6 @@ def modal_run(
         raise InputError(
             f"modal run from {first:g} m over {way:g} m: must lie on the line's {shape.catenary.length:g} m"
         )
-    if not len(modes):
-        raise InputError("modal run: no mode is left below the cut-off; raise it")
     count = int(np.floor(way / (speed * step) + 1e-9)) + 1
     if count < 2:
         raise InputError(
@@ -69,7 +67,8 @@ def modal_run(
     time: Floats = step * np.arange(count, dtype=np.float64)
     position: Floats = first + speed * time
     line, head = _ModalLine(modes, position, step), _head(pantograph, speed, step)
-    sag = shape.contact_wire_height(position) - shape.catenary.contact_wire_height
+    nominal = shape.catenary.contact_wire_height
+    sag = shape.contact_wire_height(position) - nominal
     force, lift = np.zeros(count), np.zeros(count)
     coordinates, masses = np.zeros((count, len(modes))), np.zeros((count, head.state.size // 2))
     if not at_rest:
@@ -82,12 +81,13 @@ def modal_run(
             line.finish(n, force[n])
         coordinates[n], lift[n] = line.q, line.shapes[n] @ line.q
         masses[n] = head.heights
-    nominal = shape.catenary.contact_wire_height
     return ModalRun(modes, time, position, force, nominal + sag + lift, nominal + masses.T, coordinates)
 
 
 def _check_fit(shape: Shape, modes: Modes) -> None:
-    """Raises InputError for modes of another line or mesh, and for lines with two contact wires."""
+    """Raises InputError for no modes, those of another line or mesh, and for lines with two contact wires."""
+    if not len(modes):
+        raise InputError("modal run: no mode is left below the cut-off; raise it")
     if modes.catenary != shape.catenary or not np.array_equal(modes.contact.x, shape.wires[0].x):
         raise InputError("modal run: the modes are of another line or mesh; give solve_modes(shape)")
     if len(shape.contact_wires) > 1:

@@ -79,7 +79,7 @@ def _sideways(weights: Floats, total: Floats, axes: int, node: int) -> float:
 
 @compiled
 def _move(system: Equations, scheme: Scheme, wires: Wires, motion: Motion) -> None:
-    """Positions and velocities that belong to the accelerations."""
+    """Positions and velocities that belong to the accelerations; no forces yet."""
     q, v, x = wires.q, wires.v, wires.x
     for i in range(x.shape[0]):
         motion.q[i] = q[i, 0] + scheme.b * x[i, 0]
@@ -87,6 +87,24 @@ def _move(system: Equations, scheme: Scheme, wires: Wires, motion: Motion) -> No
     for i in range(system.place.size):
         k = system.place[i]
         motion.total[i] = system.reference[i] + (motion.q[k] if k >= 0 else 0.0)
+    motion.inner[:] = 0.0
+
+
+@compiled
+def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -> None:
+    """What is out of balance at the step's end, but for contacts; the droppers' forces are in ``inner``."""
+    residual, axes = motion.residual, system.droppers.pivot.shape[1]
+    take_cables(axes, system.elements, motion.total, motion.inner)
+    take_links(system.links, motion.total, motion.inner)
+    residual[:] = system.force
+    for k in range(system.patterns.shape[0]):
+        residual += signals[k] * system.patterns[k]
+    for i in range(system.place.size):
+        if system.place[i] >= 0:
+            residual[system.place[i]] += motion.inner[i]
+    take_one(system.stiffness, motion.q, residual)
+    take_one(system.mass, flat.x, residual)
+    take_one(system.damping, motion.v, residual)
 
 
 @compiled
@@ -239,6 +257,7 @@ def _head_losses(
 
 def _loop(sources: str) -> Any:
     """Steps; ``sources`` is the stamp of all that they call."""
+    # longer than others: the arrays of a run are arguments, as compiled code knows no objects
 
     @kept
     def advance(
@@ -264,30 +283,20 @@ def _loop(sources: str) -> Any:
 
         signals : shape (loads, steps * parts + 1), of loads that vary in time, from the first step's begin on
         """
-        iterations, axes = len(sources) * 0, system.droppers.pivot.shape[1]
+        iterations = len(sources) * 0
         begin = pantographs.step[0] * parts
         for n in range(begin, begin + steps * parts):
             predict(scheme, 0.0, flat)
             _place(scheme, stations, factor, heads, pantographs, work, motion.total, scheme.h * (n + 1))
             residual, converged, change = motion.residual, False, FAR
+            step = pantographs.step[0] + 1
             for iteration in range(ITERATIONS):
                 iterations += 1
                 _move(system, scheme, wires, motion)
-                motion.inner[:] = 0.0
-                take_cables(axes, system.elements, motion.total, motion.inner)
                 take_droppers(
                     system, scheme, motion, slack, energy, records.droppers[0], pantographs.step[0] + 1
                 )
-                take_links(system.links, motion.total, motion.inner)
-                residual[:] = system.force
-                for k in range(system.patterns.shape[0]):
-                    residual += signals[k, n + 1 - begin] * system.patterns[k]
-                for i in range(system.place.size):
-                    if system.place[i] >= 0:
-                        residual[system.place[i]] += motion.inner[i]
-                take_one(system.stiffness, motion.q, residual)
-                take_one(system.mass, flat.x, residual)
-                take_one(system.damping, motion.v, residual)
+                _residual(system, motion, flat, signals[:, n + 1 - begin])
                 _contacts(heads, work, residual)
                 solve(factor, residual)
                 woodbury_update(factor, slack, residual)
@@ -313,9 +322,8 @@ def _loop(sources: str) -> Any:
                 energy.work[0] += mean * (system.patterns[k] * motion.before).sum()
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, pantographs, work, records)
-                pantographs.step[0] += 1
-                for i in range(2):
-                    energy.history[i, pantographs.step[0]] = energy.work[i]
+                pantographs.step[0] = step
+                energy.history[:, step] = energy.work
         return True, iterations
 
     return advance
