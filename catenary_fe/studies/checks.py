@@ -1,4 +1,4 @@
-"""Warnings before a solve, where physics and discretisation disagree: the rule, and both numbers."""
+"""Before a run: where it goes, and where physics and discretisation disagree: the rule, and both numbers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.layout import AnyPantograph, InputError
+from catenary_fe.layout import AnyPantograph, Catenary, InputError, counted
+from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import Shape
+
+Floats = NDArray[np.float64]
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
 SLOWEST = 5 / 3.6  # [m/s]
@@ -23,14 +27,10 @@ def check_speed(speed: float) -> None:
     """Raises InputError for a speed [m/s] that is not one, or looks like another unit."""
     if not np.isfinite(speed) or speed <= 0:
         raise InputError(f"speed = {speed:g} m/s, {3.6 * speed:g} km/h: must be above 0")
-    if speed > FASTEST:
+    if not SLOWEST <= speed <= FASTEST:
+        rule = "above 600 km/h" if speed > FASTEST else "below 5 km/h"
         raise InputError(
-            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: above 600 km/h, it looks like the wrong unit;"
-            " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
-        )
-    if speed < SLOWEST:
-        raise InputError(
-            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
+            f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: {rule}, it looks like the wrong unit;"
             " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
         )
 
@@ -70,7 +70,7 @@ def run_warnings(
     shape: Shape,
     pantographs: Sequence[AnyPantograph],
     speed: float,
-    start: NDArray[np.float64],
+    start: Floats,
     time: TimeSettings,
 ) -> list[str]:
     """What to know before trusting a run: each line has the rule and both numbers."""
@@ -118,3 +118,69 @@ def run_warnings(
             " later spans, or start earlier"
         )
     return found
+
+
+def plan_run(
+    shape: Shape,
+    pantographs: Sequence[AnyPantograph],
+    speed: float,
+    positions: Sequence[float] | None,
+    time: TimeSettings,
+    runs: Sequence[AnyPantograph] | None = None,
+) -> RunCase:
+    """A run from near the first support to as near to the last one, with what to know before trusting it.
+
+    positions : [m] along the line at the start; unset (for one pantograph): near the first support
+    runs : all pantographs on the line, with those that a script attached; unset: the same
+
+    Raises InputError for an unlikely speed, a run that does not fit on the line, a wire that leaves a head.
+    """
+    check_speed(speed)
+    runs = pantographs if runs is None else runs
+    start, distance = _route(shape.catenary, len(runs), positions)
+    check_heads(shape, pantographs, float(start.min()), float(start.max()) + distance)
+    return RunCase(runs, speed, start, distance, run_warnings(shape, pantographs, speed, start, time))
+
+
+def _route(catenary: Catenary, count: int, positions: Sequence[float] | None) -> tuple[Floats, float]:
+    """[m] starts, and the distance that each pantograph runs; all pass the evaluated spans."""
+    length, supports = catenary.length, catenary.support_positions
+    margin = float(np.diff(supports).min()) / 6
+    if positions is None:
+        if count > 1:
+            raise InputError(
+                f"{count} pantographs need their positions at the start, in metres along the line"
+            )
+        positions = [margin]
+    start = np.atleast_1d(numbers("positions", positions))
+    if start.shape != (count,):
+        raise InputError(
+            f"{counted(start.size, 'position')} for {counted(count, 'pantograph')}: give one for each"
+        )
+    for value in start:
+        if not margin <= value < length - margin:
+            raise InputError(
+                f"pantograph at {value:g} m: must start between {margin:g} m and {length - margin:g} m, a"
+                " sixth of a span from the line's ends"
+            )
+    if count > 1 and np.diff(np.sort(start)).min() < 1:
+        raise InputError("two pantographs start less than 1 m apart; give positions that differ")
+    first, last = min(catenary.spans_to_evaluate) - 1, max(catenary.spans_to_evaluate)
+    distance = length - margin - start.max()
+    if first == 0:
+        raise InputError(
+            "evaluated_spans: a run starts in the line's first span, which therefore cannot be evaluated; add"
+            " spans (three are the least) or name later ones in evaluated_spans"
+        )
+    if start.max() > supports[first]:
+        raise InputError(
+            f"a pantograph starts at {start.max():g} m, inside or behind the evaluated spans, which begin at"
+            f" {supports[first]:g} m; start earlier or evaluate later spans"
+        )
+    if start.min() + distance < supports[last]:
+        raise InputError(
+            f"the run would end beyond the line: when the last pantograph leaves the evaluated spans at"
+            f" {supports[last]:g} m, the first one would be at {supports[last] + np.ptp(start):g} m of"
+            f" {length:g} m; use more spans, evaluate earlier ones, or put the pantographs closer together"
+        )
+    return start, float(distance)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time as clock
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
@@ -17,12 +17,12 @@ from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
 from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted, counted
-from catenary_fe.layout.arguments import checked, number, numbers, one_of
+from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted
+from catenary_fe.layout.arguments import checked, number, one_of
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
-from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
+from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
 from catenary_fe.studies.mean_force import MeanForce
 from catenary_fe.studies.record import kept_when_stopped, make_run, run_key
@@ -44,18 +44,6 @@ AIMING = 0.1  # share of linearised runs in the work of one that follows them
 Drive = Callable[[RunCase, Floats, Progress | None, Checkpoint | None], History]
 
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Where a run starts and ends.
-
-    start : [m], shape (pantographs,)
-    distance : [m] that each pantograph runs
-    """
-
-    start: Floats
-    distance: float
 
 
 @checked
@@ -107,61 +95,72 @@ def simulate(
         runs = model.records
     check_pantographs(runs)
     time = time or TimeSettings()
-    _check_options(speed, method, energy, time, store_wire)
-    if checkpoint is not None and method != "nonlinear":
-        raise InputError(
-            f"checkpoint {checkpoint}: only runs with the method nonlinear keep one; leave it out"
-        )
-    plan = plan_run(shape, len(runs), positions)
-    check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
-    warnings = run_warnings(shape, pantographs, speed, plan.start, time)
+    _check_options(method, energy, time, store_wire, checkpoint)
+    case = plan_run(shape, pantographs, speed, positions, time, runs)
+    warnings = list(case.warnings)
     if method == "linearised" and time.tolerance != TimeSettings().tolerance:
         warnings.append(
             f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
         )
     if model is not None:
         warnings.append(OF_A_SCRIPT)
-    case = RunCase(runs, speed, plan.start, plan.distance, warnings)
-    _check_room(shape, case, time, store_wire, method)
+    case = replace(case, warnings=warnings)
+    _check_memory(shape, case, time, store_wire, method)
     for warning in warnings:
         _log.warning(warning)
     if method == "linearised":
-        return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
-    set_up = partial(_compiled, shape, time, store_wire)
-    if method == "exudyn":
-        set_up = partial(_by_exudyn, shape, time, store_wire, energy, model)
+        (result,) = LinearisedLine(shape, time, store_wire).run([case], progress)
+        if isinstance(result, CatenaryError):
+            raise result
+        run = result
+    else:
+        keeper, force = None, MeanForce(runs, speed)
+        if checkpoint is not None:
+            key = run_key(shape, pantographs, speed, time, case.start, store_wire)
+            keeper = Checkpoint(checkpoint, key)
+        if force.sought and not (keeper and keeper.kept) and len(runs) == len(pantographs):
+            force, progress = _aimed(shape, case, time, progress)
+        set_up = partial(_engine, shape, time, store_wire, method, energy, model)
 
-    def label(uplifts: Floats, history: History) -> Run:
-        return make_run(shape, case, uplifts, time, history, warnings, method, scripted=model is not None)
+        def label(uplifts: Floats, history: History) -> Run:
+            return make_run(shape, case, uplifts, time, history, warnings, method, scripted=model is not None)
 
-    keeper = None
-    if checkpoint is not None:
-        keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
-    force = MeanForce(runs, speed)
-    if force.sought and not (keeper and keeper.kept) and len(runs) == len(pantographs):
-        force, progress = _aimed(shape, case, time, progress)
-    return _told(_until_mean_force(case, time, force, set_up, label, progress, keeper), len(warnings))
-
-
-def _told(run: Run, known: int) -> Run:
-    """The run, with what it warns of in the log; the first ``known`` warnings are there already."""
-    for warning in run.warnings[known:]:
+        run = _until_mean_force(case, time, force, set_up, label, progress, keeper)
+    for warning in run.warnings[len(warnings) :]:
         _log.warning(warning)
     return run
 
 
+def _aimed(
+    shape: Shape, case: RunCase, time: TimeSettings, progress: Progress | None
+) -> tuple[MeanForce, Progress | None]:
+    """Uplifts to begin with, found by linearised runs, and the progress of what is left to do."""
+    try:
+        force = aimed(shape, case, time, share_of(progress, 0.0, AIMING))
+    except KeyboardInterrupt as error:
+        raise error if isinstance(error, RunInterrupted) else RunInterrupted() from None
+    return force, share_of(progress, AIMING, 1 - AIMING)
+
+
 def _check_options(
-    speed: float, method: Method, energy: bool, time: TimeSettings, store_wire: float | None
+    method: Method,
+    energy: bool,
+    time: TimeSettings,
+    store_wire: float | None,
+    checkpoint: str | Path | None,
 ) -> None:
-    check_speed(speed)
     one_of("method", method, get_args(Method))
     if energy and method == "linearised":
         raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
     if store_wire is not None:
         number("store_wire", store_wire, "s", least=time.step, remedy="that is the time step")
+    if checkpoint is not None and method != "nonlinear":
+        raise InputError(
+            f"checkpoint {checkpoint}: only runs with the method nonlinear keep one; leave it out"
+        )
 
 
-def _check_room(
+def _check_memory(
     shape: Shape, case: RunCase, time: TimeSettings, store_wire: float | None, method: Method
 ) -> None:
     """Raises InputError for a run that takes more memory than there is."""
@@ -174,26 +173,6 @@ def _check_room(
     shapes = int(steps * time.step / store_wire) + 1 if store_wire else 0
     needs = demand(shape.catenary, shape.mesh, case.pantographs, steps, shapes, method)
     check_memory(needs, f"run at {3.6 * case.speed:g} km/h")
-
-
-def _linearised(
-    shape: Shape, time: TimeSettings, store_wire: float | None, case: RunCase, progress: Progress | None
-) -> Run:
-    (result,) = LinearisedLine(shape, time, store_wire).run([case], progress)
-    if isinstance(result, CatenaryError):
-        raise result
-    return result
-
-
-def _aimed(
-    shape: Shape, case: RunCase, time: TimeSettings, progress: Progress | None
-) -> tuple[MeanForce, Progress | None]:
-    """Uplifts to begin with, found by linearised runs, and the progress of what is left to do."""
-    try:
-        force = aimed(shape, case, time, share_of(progress, 0.0, AIMING))
-    except KeyboardInterrupt as error:
-        raise error if isinstance(error, RunInterrupted) else RunInterrupted() from None
-    return force, share_of(progress, AIMING, 1 - AIMING)
 
 
 def _until_mean_force(
@@ -227,18 +206,21 @@ def _until_mean_force(
         begin = clock.perf_counter()
 
 
-def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Drive:
+def _engine(
+    shape: Shape,
+    time: TimeSettings,
+    store_wire: float | None,
+    method: Method,
+    energy: bool,
+    model: ExudynModel | None,
+) -> Drive:
+    if method == "exudyn":
+        from catenary_fe.engines.exudyn.run import ExudynEngine
+
+        return ExudynEngine(shape, time, store_wire, energy=energy, model=model).run
     from catenary_fe.engines.nonlinear.run import NonlinearEngine
 
     return NonlinearEngine(shape.system, time, store_wire).run
-
-
-def _by_exudyn(
-    shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool, model: ExudynModel | None
-) -> Drive:
-    from catenary_fe.engines.exudyn.run import ExudynEngine
-
-    return ExudynEngine(shape, time, store_wire, energy=energy, model=model).run
 
 
 def _check_model(
@@ -258,51 +240,3 @@ def _check_model(
             "energy: not of a model that a script may have changed, whose springs and masses are not those of"
             " the layout; leave it out"
         )
-
-
-def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Plan:
-    """Start near the first support, end as near to the last one; all pantographs pass the evaluated spans.
-
-    Raises InputError where that does not fit on the line.
-    """
-    catenary = shape.catenary
-    length, supports = catenary.length, catenary.support_positions
-    margin = float(np.diff(supports).min()) / 6
-    if positions is None:
-        if count > 1:
-            raise InputError(
-                f"{count} pantographs need their positions at the start, in metres along the line"
-            )
-        positions = [margin]
-    start = np.atleast_1d(numbers("positions", positions))
-    if start.shape != (count,):
-        raise InputError(
-            f"{counted(start.size, 'position')} for {counted(count, 'pantograph')}: give one for each"
-        )
-    for value in start:
-        if not margin <= value < length - margin:
-            raise InputError(
-                f"pantograph at {value:g} m: must start between {margin:g} m and {length - margin:g} m, a"
-                " sixth of a span from the line's ends"
-            )
-    if count > 1 and np.diff(np.sort(start)).min() < 1:
-        raise InputError("two pantographs start less than 1 m apart; give positions that differ")
-    first, last = min(catenary.spans_to_evaluate) - 1, max(catenary.spans_to_evaluate)
-    distance = length - margin - start.max()
-    if first == 0:
-        raise InputError(
-            "evaluated_spans: a run starts in the line's first span, which therefore cannot be evaluated; add"
-            " spans (three are the least) or name later ones in evaluated_spans"
-        )
-    if start.max() > supports[first]:
-        raise InputError(
-            f"a pantograph starts at {start.max():g} m, inside or behind the evaluated spans, which begin at"
-            f" {supports[first]:g} m; start earlier or evaluate later spans"
-        )
-    if start.min() + distance < supports[last]:
-        raise InputError(
-            f"the run would end beyond the line: when the last pantograph leaves the evaluated spans at"
-            f" {supports[last]:g} m, the first one would be at {supports[last] + np.ptp(start):g} m of"
-            f" {length:g} m; use more spans, evaluate earlier ones, or put the pantographs closer together"
-        )
-    return Plan(start, float(distance))

@@ -28,10 +28,10 @@ from catenary_fe.layout.arguments import whole
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape, find_form
-from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
+from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
-from catenary_fe.studies.simulate import Method, plan_run, simulate
+from catenary_fe.studies.simulate import Method, simulate
 from catenary_fe.studies.sweep_store import Record, Store, open_store
 
 Progress = Callable[[int, int], None]
@@ -343,12 +343,8 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
     good: list[RunCase] = []
     for case in cases:
         try:
-            check_speed(case.speed)
-            plan = plan_run(shape, len(case.pantographs), case.positions or None)
-            first, last = float(plan.start.min()), float(plan.start.max() + plan.distance)
-            check_heads(shape, case.pantographs, first, last)
-            doubts = run_warnings(shape, case.pantographs, case.speed, plan.start, settings.time)
-            good.append(RunCase(case.pantographs, case.speed, plan.start, plan.distance, doubts))
+            positions = case.positions or None
+            good.append(plan_run(shape, case.pantographs, case.speed, positions, settings.time))
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))

@@ -20,7 +20,7 @@ from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import place
 from catenary_fe.layout import SolverError
 from catenary_fe.statics import Shape
-from catenary_fe.statics.contact import static_contact
+from catenary_fe.statics.newton import static_contact
 
 Floats = NDArray[np.float64]
 STRETCH = 25  # steps that are divided from where one failed
