@@ -64,6 +64,14 @@ def force_floor(system: System, load: Floats) -> float:
     return max(_FLOOR, _SETTLED * float(np.abs(system.force + load).max()))
 
 
+def free_part(system: System, moved: Floats) -> Floats:
+    """Shape (free,), displacements or rates of the free coordinates, from those of all."""
+    moves = system.place >= 0
+    free = np.zeros(system.size)
+    free[system.place[moves]] = moved[moves]
+    return free
+
+
 def solve_loaded(system: System, load: Floats, guess: Floats) -> tuple[Floats, Floats | None]:
     """Displacements under a load, and what is left out of balance [N] if that is too much, shape (all,) each.
 
@@ -74,11 +82,8 @@ def solve_loaded(system: System, load: Floats, guess: Floats) -> tuple[Floats, F
     def residual(x: Floats) -> Floats:
         return system.gather(system.out_of_balance(system.spread(x)) + load)
 
-    start = np.zeros(system.size)
-    free = system.place >= 0
-    start[system.place[free]] = guess[free]
     x, found = minimise(
-        start,
+        free_part(system, guess),
         residual,
         lambda x: system.tangent(system.spread(x), taut=False),
         lambda x: system.energy(system.spread(x)) - float(load @ system.spread(x)),

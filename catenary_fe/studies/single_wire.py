@@ -29,7 +29,7 @@ from catenary_fe.fe.wire_problem import (
 from catenary_fe.layout import InputError, SolverError
 from catenary_fe.layout.arguments import checked, number, one_of
 from catenary_fe.layout.substructure import ContactLaw, Strip, Substructure
-from catenary_fe.statics.newton import solve_loaded
+from catenary_fe.statics.newton import free_part, solve_loaded
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]
@@ -71,15 +71,7 @@ def run_wire(
         raise InputError("energy: linearised runs do not record it; take the method 'nonlinear'")
     system = wire_system(problem)
     run = _WireRun(system, [problem], problem.loads, steps, time, method)
-    states = _States(steps, every)
-    states.take(0, run)
-    for count in range(1, steps + 1):
-        run.step(count)
-        if count % every == 0:
-            states.take(count, run)
-        if progress and count % 50 == 0:
-            progress(count / steps)
-    return states.motion(run, problem, 0, energy=energy)
+    return run.motions(steps, every, progress, energy=energy)[0]
 
 
 def run_pair(
@@ -91,17 +83,8 @@ def run_pair(
     """
     system, steps = pair_system(pair), _steps("duration", duration, time.step)
     run = _WireRun(system, [pair.lower, pair.upper], (), steps, time, method)
-    states = _States(steps, 1)
-    states.take(0, run)
-    for count in range(1, steps + 1):
-        run.step(count)
-        states.take(count, run)
-    lower, upper = (
-        states.motion(run, problem, number, energy=False)
-        for number, problem in enumerate((pair.lower, pair.upper))
-    )
-    force = run.records.droppers[0, 0, : steps + 1].copy()
-    return PairMotion(lower, upper, force)
+    lower, upper = run.motions(steps, 1)
+    return PairMotion(lower, upper, run.records.droppers[0, 0, : steps + 1].copy())
 
 
 def wire_at_rest(problem: WireProblem) -> Floats:
@@ -153,8 +136,7 @@ def _placed(load: Load, deflection: float) -> PlacedPantograph:
 
 
 def _at_start(force: float, deflection: float) -> tuple[Floats, Floats]:
-    off = not np.isfinite(deflection)
-    return np.array([0.0 if off else force]), np.array([deflection])
+    return np.array([force if np.isfinite(deflection) else 0.0]), np.array([deflection])
 
 
 class _WireRun:
@@ -210,7 +192,7 @@ class _WireRun:
         free = spsolve(system.free(system.mass).tocsc(), system.gather(force))
         return system.spread(np.atleast_1d(free)), heads
 
-    def step(self, count: int) -> None:
+    def _step(self, count: int) -> None:
         """Take one step, the count-th, with the forces of its end."""
         t = count * self._time.step
         for j, load in enumerate(self._loads):
@@ -231,11 +213,38 @@ class _WireRun:
         self._heads.law[0, j, :, 0] = heights
         self._heads.law[0, j, :, 1] = [load.contact_force(t, float(u)) for u in heights]
 
-    def motion(self) -> tuple[Floats, Floats]:
-        """Displacements and velocities now, shape (all,) each."""
-        return self._engine.motion()
+    def motions(
+        self, steps: int, every: int, progress: Progress | None = None, *, energy: bool = False
+    ) -> list[WireMotion]:
+        """Motion of each wire, stored at every so many steps; loads are on the first one."""
+        system, taken = self.system, [self._engine.motion()]
+        for count in range(1, steps + 1):
+            self._step(count)
+            if count % every == 0:
+                taken.append(self._engine.motion())
+            if progress and count % 50 == 0:
+                progress(count / steps)
+        counts = np.arange(0, steps + 1, every)
+        forces, under, heads = self._at_loads(counts)
+        found = []
+        for i, wire in enumerate(system.wires):
+            up = system.heights[wire.first : wire.first + wire.x.size]
+            rest = system.reference[up] - (system.reference[up[0]] if i else 0.0)
+            found.append(
+                WireMotion(
+                    t=np.asarray(counts * self._time.step, dtype=np.float64),
+                    x=wire.x,
+                    deflection=np.array([rest + q[up] for q, _ in taken]),
+                    velocity=np.array([v[up] for _, v in taken]),
+                    forces=forces,
+                    under_loads=under,
+                    heads=heads,
+                    energy=np.array([_energy(system, q, v) for q, v in taken] if energy else []),
+                )
+            )
+        return found
 
-    def at_loads(self, counts: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+    def _at_loads(self, counts: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
         """Forces [N], deflections and heads' heights [m] at these steps, shape (times, loads) each."""
         records, loads = self.records, self._loads
         shape = counts.size, len(loads)
@@ -259,12 +268,7 @@ class _Nonlinear:
         self.heads, self.records = self._run.state.heads, self._run.records
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
-        self._run.set_in_motion(self._free(v), self._free(x), heads)
-
-    def _free(self, values: Floats) -> Floats:
-        free, moves = np.zeros(self._system.size), self._system.place >= 0
-        free[self._system.place[moves]] = values[moves]
-        return free
+        self._run.set_in_motion(free_part(self._system, v), free_part(self._system, x), heads)
 
     def advance(self) -> None:
         self._run.advance(1, read=False)
@@ -293,13 +297,9 @@ class _Linearised:
         start = InitialState(np.zeros(setup.size), list(placed), tensions, 0.0, wires)
         self._batch.load(0, start, steps)
         self.heads, self.records = self._batch.heads, self._batch.records
-        self._index, self._dof = self._coordinates()
-
-    def _coordinates(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Heights and vertical slopes: numbers among all coordinates, and among the engine's own."""
-        all_of, own = self._setup.model.vertical
-        moves = own >= 0
-        return all_of[moves], own[moves]
+        # heights and vertical slopes: numbers among all coordinates, and among the engine's own
+        all_of, own = setup.model.vertical
+        self._index, self._dof = all_of[own >= 0], own[own >= 0]
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
         wires, own, scheme = self._batch.wires, self._batch.pantographs, self._setup.scheme
@@ -321,38 +321,6 @@ class _Linearised:
             spread[self._index] = (values + share * wires.x)[self._dof, 0]
             found.append(spread)
         return found[0], found[1]
-
-
-class _States:
-    """States at every so many steps."""
-
-    def __init__(self, steps: int, every: int) -> None:
-        self._counts = np.arange(0, steps + 1, every)
-        self._taken: list[tuple[Floats, Floats]] = []
-
-    def take(self, count: int, run: _WireRun) -> None:
-        self._taken.append(run.motion())
-
-    def motion(self, run: _WireRun, problem: WireProblem, number: int, *, energy: bool) -> WireMotion:
-        system, wire = run.system, run.system.wires[number]
-        up = system.heights[wire.first : wire.first + wire.x.size]
-        rest = system.reference[up] - (system.reference[up[0]] if number else 0.0)
-        forces, under, heads = run.at_loads(self._counts) if number == 0 else _nothing(self._counts.size)
-        return WireMotion(
-            t=np.asarray(self._counts * run._time.step, dtype=np.float64),
-            x=wire.x,
-            deflection=np.array([rest + q[up] for q, _ in self._taken]),
-            velocity=np.array([v[up] for _, v in self._taken]),
-            forces=forces,
-            under_loads=under,
-            heads=heads,
-            energy=np.array([_energy(system, q, v) for q, v in self._taken] if energy else []),
-        )
-
-
-def _nothing(times: int) -> tuple[Floats, Floats, Floats]:
-    none = np.zeros((times, 0))
-    return none, none, none
 
 
 def _energy(system: System, q: Floats, v: Floats) -> float:
