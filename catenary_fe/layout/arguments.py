@@ -19,7 +19,6 @@ Floats = NDArray[np.float64]
 _ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
 _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
-_ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
 
 
 def number(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
-from typing import Annotated, Any, Self, TypeVar
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
@@ -29,8 +29,6 @@ from catenary_fe.layout.toml import read_toml
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
 MOST_DROPPERS = 200_000  # of a line, likewise
-
-_Model = TypeVar("_Model", bound=BaseModel)
 
 
 class WireEntry(Wire):
@@ -195,21 +193,16 @@ class LayoutFile(Parameters):
         self._check_size()
         spans = tuple(span for entry in self.span for span in (self._span(entry),) * entry.count)
         supports, faults = self._all_supports(len(spans) + 1)
+        made = {"contact_wire", "messenger_wire", "stitch_wire", "supports"}
+        same = Catenary.model_fields.keys() & type(self).model_fields.keys() - made
         try:
             catenary = Catenary(
-                name=self.name,
-                source=self.source,
                 contact_wire=self.contact_wire.wire(),
                 messenger_wire=self.messenger_wire.wire(),
-                contact_wire_spacing=self.contact_wire_spacing,
                 stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
                 spans=spans,
                 supports=supports,
-                contact_wire_height=self.contact_wire_height,
-                system_height=self.system_height,
-                damping=self.damping,
-                evaluated_spans=self.evaluated_spans,
-                spatial=self.spatial,
+                **{name: getattr(self, name) for name in same},
             )
         except InputError as error:
             faults += error.problems
@@ -323,11 +316,6 @@ def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str
     return ()
 
 
-def read_layout(path: str | Path) -> dict[str, Any]:
-    """A layout file as it is written, not checked yet. Raises InputError if it is no TOML file."""
-    return read_toml(Path(path), "layout")
-
-
 @checked
 def load_pantograph(name_or_path: str | Path) -> DescribedPantograph:
     """A pantograph from a TOML file, or from the library by its name.
@@ -340,7 +328,11 @@ def load_pantograph(name_or_path: str | Path) -> DescribedPantograph:
     if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
         record = read_toml(path, "pantograph")
         elastic = "stages" not in record and not record.keys().isdisjoint({"force", "stiffness", "law"})
-        return _checked(record, ElasticPantograph, path) if elastic else _checked(record, Pantograph, path)
+        model = ElasticPantograph if elastic else Pantograph
+        try:
+            return model.model_validate(record)
+        except ValidationError as error:
+            raise InputError(*problem_lines(error, model, where=str(path))) from None
     return library.pantograph(str(name_or_path))
 
 
@@ -352,10 +344,3 @@ def layout_schema() -> dict[str, Any]:
 def pantograph_schema() -> dict[str, Any]:
     """JSON Schema of a pantograph file, of masses or elastic."""
     return TypeAdapter(DescribedPantograph).json_schema() | {"title": "catenary_fe pantograph"}
-
-
-def _checked(record: dict[str, Any], model: type[_Model], path: Path) -> _Model:
-    try:
-        return model.model_validate(record)
-    except ValidationError as error:
-        raise InputError(*problem_lines(error, model, where=str(path))) from None

@@ -12,9 +12,10 @@ from pydantic import BaseModel, ValidationError
 
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph, read_layout
+from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph
 from catenary_fe.layout.pantograph import DescribedPantograph
 from catenary_fe.layout.parameters import problem_lines
+from catenary_fe.layout.toml import read_toml
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
 
@@ -30,7 +31,7 @@ class Variable:
 
     def __init__(self, layout: str | Path) -> None:
         self._path = Path(layout)
-        self._record = read_layout(self._path)
+        self._record = read_toml(self._path, "layout")
 
     def catenary(self, values: dict[str, Any]) -> Catenary:
         """The catenary with these values; keys of the pantograph are left out.

@@ -22,6 +22,7 @@ from catenary_fe.results.run import FORMAT
 from catenary_fe.statics import Shape
 
 Floats = NDArray[np.float64]
+Rows = dict[str, tuple[Any, ...]]  # dimensions, values, and of a quantity its unit and name
 _NOTES = 3  # by themselves
 CHECKPOINT_FORM = 3  # rises when what a checkpoint holds changes
 
@@ -43,51 +44,43 @@ def make_run(
     """
     import xarray as xr
 
-    catenary, pantographs, speed = shape.catenary, case.pantographs, case.speed
+    catenary, pantographs = shape.catenary, case.pantographs
     static = np.array([w.z[m.supports] for w, m in zip(shape.contact_wires, shape.mesh.wires, strict=False)])
-    nominal = catenary.contact_wire_height
-    by_time = ("pantograph", "time")
-    variables: dict[str, Any] = {
-        "position": _labelled(by_time, history.position, "m", "position along the line"),
-        "contact_force": _labelled(by_time, history.contact_force, "N", "contact force, unfiltered"),
-        "wire_height": _labelled(
-            by_time, nominal + history.wire_height, "m", "height of the contact wire over the head"
-        ),
-        "mass_height": _labelled(
-            ("pantograph", "mass", "time"),
-            nominal + _stack(history.mass_heights),
-            "m",
-            "height of the masses",
-        ),
-        "uplift_force": _labelled(("pantograph",), uplifts, "N", "constant force on the lowest mass"),
-        "dropper_force": _labelled(("dropper", "time"), history.dropper_force, "N", "dropper tension"),
-        "support_uplift": _labelled(
-            ("support", "time"),
-            (history.support_height - static[:, :, None]).max(axis=0),
-            "m",
-            "uplift of the contact wire at supports",
-        ),
+    uplift = (history.support_height - static[:, :, None]).max(axis=0)
+    nominal, by_time = catenary.contact_wire_height, ("pantograph", "time")
+    masses, wire = nominal + _stack(history.mass_heights), nominal + history.wire_height
+    variables: Rows = {
+        "position": (by_time, history.position, "m", "position along the line"),
+        "contact_force": (by_time, history.contact_force, "N", "contact force, unfiltered"),
+        "wire_height": (by_time, wire, "m", "height of the contact wire over the head"),
+        "mass_height": (("pantograph", "mass", "time"), masses, "m", "height of the masses"),
+        "uplift_force": (("pantograph",), uplifts, "N", "constant force on the lowest mass"),
+        "dropper_force": (("dropper", "time"), history.dropper_force, "N", "dropper tension"),
+        "support_uplift": (("support", "time"), uplift, "m", "uplift of the contact wire at supports"),
     }
-    coordinates: dict[str, Any] = {
-        "time": _labelled(("time",), history.time, "s", "time"),
+    coordinates: Rows = {
+        "time": (("time",), history.time, "s", "time"),
         "pantograph": ("pantograph", _unique([p.name for p in pantographs])),
-        "dropper_position": _labelled(("dropper",), catenary.dropper_positions, "m", "position of droppers"),
+        "dropper_position": (("dropper",), catenary.dropper_positions, "m", "position of droppers"),
         "dropper_span": ("dropper", catenary.dropper_spans),
-        "support_position": _labelled(("support",), catenary.support_positions, "m", "position of supports"),
+        "support_position": (("support",), catenary.support_positions, "m", "position of supports"),
     }
-    if history.wire_z:
-        coordinates["wire_time"] = _labelled(("wire_time",), history.wire_times, "s", "time of wire shapes")
-        for name, x, values, hanging in zip(
-            _wire_names(shape), history.wire_x, history.wire_z, shape.wires, strict=True
-        ):
-            _add_wire_shapes(variables, coordinates, name, x, values, hanging.z)
+    _add_wire_shapes(variables, coordinates, shape, history)
     _add_balances(variables, coordinates, shape, history)
-    attributes = _provenance(shape, pantographs, speed, time, method)
+    attributes = _provenance(shape, pantographs, case.speed, time, method)
     attributes["warnings"] = json.dumps([*warnings, *_brief(history.notes)])
     if scripted:
         attributes["model"] = "of a script"
         attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["model"])
-    return Run(xr.Dataset(variables, coordinates, attributes))
+    return Run(xr.Dataset(_labelled(variables), _labelled(coordinates), attributes))
+
+
+def _labelled(rows: Rows) -> dict[str, Any]:
+    """As xarray takes them, units and names as attributes."""
+    return {
+        key: (dims, values, dict(zip(("units", "long_name"), words, strict=False)))
+        for key, (dims, values, *words) in rows.items()
+    }
 
 
 def _brief(notes: Sequence[str]) -> list[str]:
@@ -97,31 +90,24 @@ def _brief(notes: Sequence[str]) -> list[str]:
     return [*notes[: _NOTES - 1], f"{len(notes) - _NOTES + 1} more such warnings, the last one: {notes[-1]}"]
 
 
-def _add_balances(
-    variables: dict[str, Any], coordinates: dict[str, Any], shape: Shape, history: History
-) -> None:
+def _add_balances(variables: Rows, coordinates: Rows, shape: Shape, history: History) -> None:
     """Energy, work and tension, as far as the run recorded them."""
     if history.lost_work is not None and history.energy.size:
         at = np.searchsorted(history.time, history.energy_times - 1e-9)
-        coordinates["energy_time"] = _labelled(
-            ("energy_time",), history.energy_times, "s", "time of energies"
-        )
-        for name, values, words in (
-            ("energy", history.energy - history.energy[0], "kinetic and stored energy since the start"),
-            ("driven_work", history.driven_work[at], "work done by the contacts"),
-            ("lost_work", history.lost_work[at], "work lost in dampers"),
-        ):
-            variables[name] = _labelled(("energy_time",), values, "J", words)
+        place = ("energy_time",)
+        energy, driven, lost = history.energy - history.energy[0], history.driven_work, history.lost_work
+        coordinates["energy_time"] = (place, history.energy_times, "s", "time of energies")
+        variables["energy"] = (place, energy, "J", "kinetic and stored energy since the start")
+        variables["driven_work"] = (place, driven[at], "J", "work done by the contacts")
+        variables["lost_work"] = (place, lost[at], "J", "work lost in dampers")
     if history.tension_change is not None:
-        words = "largest relative change of a wire's tension in a span since the start"
-        coordinates["tension_time"] = _labelled(
-            ("tension_time",), history.tension_times, "s", "time of tensions"
-        )
-        coordinates["wire"] = ("wire", _wire_names(shape))
         by_wire = ("wire", "tension_time")
-        variables["tension_change"] = _labelled(by_wire, history.tension_change, "1", words)
+        coordinates["tension_time"] = (("tension_time",), history.tension_times, "s", "time of tensions")
+        coordinates["wire"] = ("wire", _wire_names(shape))
+        words = "largest relative change of a wire's tension in a span since the start"
+        variables["tension_change"] = (by_wire, history.tension_change, "1", words)
         words = "number of the span where that is; of a stitch wire, always 1"
-        variables["tension_span"] = _labelled(by_wire, history.tension_span, "1", words)
+        variables["tension_span"] = (by_wire, history.tension_span, "1", words)
 
 
 def _wire_names(shape: Shape) -> list[str]:
@@ -130,27 +116,19 @@ def _wire_names(shape: Shape) -> list[str]:
     return [*contact, "messenger_wire", *stitch]
 
 
-def _add_wire_shapes(
-    variables: dict[str, Any],
-    coordinates: dict[str, Any],
-    wire: str,
-    x: Floats,
-    values: Any,
-    static: Floats,
-) -> None:
-    """Whole shapes of one wire over time, in single precision: 0.5 µm at a height of 6 m."""
-    name, place = wire.replace("_", " "), "x" if wire == "contact_wire" else f"{wire}_x"
-    height, before = f"height of the {name}", f"height of the {name} before the run"
-    shapes = np.asarray(values, dtype=np.float32)
-    variables[f"{wire}_height"] = _labelled(("wire_time", place), shapes, "m", height)
-    coordinates[place] = _labelled((place,), x, "m", "position along the line")
-    coordinates[f"static_{wire}_height"] = _labelled((place,), static, "m", before)
-
-
-def _labelled(
-    dims: tuple[str, ...], values: Any, units: str, name: str
-) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-    return dims, values, {"units": units, "long_name": name}
+def _add_wire_shapes(variables: Rows, coordinates: Rows, shape: Shape, history: History) -> None:
+    """Whole shapes of the wires over time, in single precision: 0.5 µm at a height of 6 m."""
+    if not history.wire_z:
+        return
+    coordinates["wire_time"] = (("wire_time",), history.wire_times, "s", "time of wire shapes")
+    wires = zip(_wire_names(shape), history.wire_x, history.wire_z, shape.wires, strict=True)
+    for wire, x, values, static in wires:
+        place = "x" if wire == "contact_wire" else f"{wire}_x"
+        height = f"height of the {wire.replace('_', ' ')}"
+        shapes = np.asarray(values, dtype=np.float32)
+        variables[f"{wire}_height"] = (("wire_time", place), shapes, "m", height)
+        coordinates[place] = ((place,), x, "m", "position along the line")
+        coordinates[f"static_{wire}_height"] = ((place,), static.z, "m", f"{height} before the run")
 
 
 def _stack(masses: Sequence[Floats]) -> Floats:
@@ -229,18 +207,11 @@ def kept_when_stopped(label: Callable[[History], Run], planned: float) -> Iterat
         cause = stopped.cause
         error = cause if isinstance(cause, SolverError | RunInterrupted) else RunInterrupted()
         if stopped.history is not None:
+            run = label(stopped.history)
+            reached = float(run.time[-1])
+            title = f"PARTIAL, {reached:.2f} of {planned:.2f} s: {run.data.attrs['title']}"  # heads pictures
             reason = str(cause) if isinstance(cause, SolverError) else "interrupted"
-            error.partial = marked(label(stopped.history), reason, planned)
+            record = {"reason": reason, "reached_s": reached, "planned_s": planned}
+            partial = run.data.assign_attrs(title=title, partial=json.dumps(record))
+            error.partial = Run(partial, run.wall_s)
         raise error from None
-
-
-def marked(run: Run, reason: str, planned: float) -> Run:
-    """The run as a partial one: its title, which heads every picture, says so, too.
-
-    reason : why it ended
-    planned : [s] that it should have taken
-    """
-    reached = float(run.time[-1])
-    title = f"PARTIAL, {reached:.2f} of {planned:.2f} s: {run.data.attrs['title']}"
-    record = {"reason": reason, "reached_s": reached, "planned_s": planned}
-    return Run(run.data.assign_attrs(title=title, partial=json.dumps(record)), run.wall_s)

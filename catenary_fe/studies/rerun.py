@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import cast
 
-import numpy as np
-
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.layout import InputError
@@ -47,29 +45,6 @@ def rerun(run: Run, progress: Callable[[float], None] | None = None) -> Rerun:
         raise InputError(f"{run.partial}: start it again with the command in its inputs.json")
     if "model" in run.data.attrs:
         raise InputError(f"the run was {OF_A_SCRIPT}")
-    shape, again = _again(run, progress)
-    if again.time.size != run.time.size:
-        raise InputError(f"the repeated run has {again.time.size} times, not {run.time.size}: other settings")
-    before, after = run.contact_force_statistics(), again.contact_force_statistics()
-    return Rerun(
-        shape=shape,
-        again=again,
-        identical=again.data.drop_attrs().identical(run.without_elasticity().data.drop_attrs()),
-        contact_force=_difference(run, again, "contact_force"),
-        support_uplift=_difference(run, again, "support_uplift"),
-        statistics=max(
-            max(abs(a.mean - b.mean), abs(a.std - b.std)) for a, b in zip(before, after, strict=True)
-        ),
-    )
-
-
-def shape_of(run: Run) -> Shape:
-    """The static shape that a run started from, found again on its mesh. Raises InputError."""
-    mesh, _ = _settings(run)
-    return find_form(run.catenary, mesh)
-
-
-def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, Run]:
     shape, stored = shape_of(run), run.data.get("wire_time")
     again = simulate(
         shape,
@@ -82,7 +57,27 @@ def _again(run: Run, progress: Callable[[float], None] | None) -> tuple[Shape, R
         energy="energy" in run.data,
         method=cast(Method, run.method),  # simulate refuses one that it does not know
     )
-    return shape, again
+    if again.time.size != run.time.size:
+        raise InputError(f"the repeated run has {again.time.size} times, not {run.time.size}: other settings")
+    before, after = run.contact_force_statistics(), again.contact_force_statistics()
+    names = ["contact_force", "support_uplift"]
+    largest = abs(again.data[names] - run.data[names]).max()
+    return Rerun(
+        shape=shape,
+        again=again,
+        identical=again.data.drop_attrs().identical(run.without_elasticity().data.drop_attrs()),
+        contact_force=float(largest["contact_force"]),
+        support_uplift=float(largest["support_uplift"]),
+        statistics=max(
+            max(abs(a.mean - b.mean), abs(a.std - b.std)) for a, b in zip(before, after, strict=True)
+        ),
+    )
+
+
+def shape_of(run: Run) -> Shape:
+    """The static shape that a run started from, found again on its mesh. Raises InputError."""
+    mesh, _ = _settings(run)
+    return find_form(run.catenary, mesh)
 
 
 def _settings(run: Run) -> tuple[MeshSettings, TimeSettings]:
@@ -91,7 +86,3 @@ def _settings(run: Run) -> tuple[MeshSettings, TimeSettings]:
         return MeshSettings(**settings["mesh"]), TimeSettings(**settings["time"])
     except TypeError as error:
         raise InputError(f"settings of the run are not those of this version: {error}") from None
-
-
-def _difference(run: Run, again: Run, variable: str) -> float:
-    return float(np.abs(again.data[variable].values - run.data[variable].values).max())
