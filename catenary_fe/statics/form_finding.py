@@ -30,17 +30,18 @@ from catenary_fe.statics.taut_wires import TautProblem, TautWires, installed_lin
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Held = dict[int, float]
+Fixed = dict[int, float]
 
 _LEAST_STEP = 1e-6  # of a Newton step: below it no step lowers the energy any more
 
 
-class Hanging:
+class WireSubstructures:
     """All wires of a catenary and what is known of them so far.
 
     found : [m], shape (axes - 1, 2 * nodes), per axis across the track the nodes' places, then their slopes;
         heights are the last
     pull : [N], shape (droppers,), of each dropper on its contact wire, upwards
+    reactions : [N], shape (axes - 1, 2 * nodes), forces of masts on the wires
     """
 
     def __init__(self, catenary: Catenary, settings: MeshSettings) -> None:
@@ -54,14 +55,15 @@ class Hanging:
         self.pull, self._half_weight = np.zeros(len(droppers)), np.zeros(len(droppers))
         self._lower = self.wires.dof[self.mesh.nodes(self.mesh.lower)]
         self._upper = self.wires.dof[self.mesh.nodes(self.mesh.upper)]
-        self._lateral: Floats = np.zeros(2 * self.wires.nodes)  # reactions [N]
-        self._vertical: Floats = np.zeros(2 * self.wires.nodes)
-        guess = -catenary.lateral_pulls / self.mesh.contact_wires
-        self._pushed_aside = np.tile(guess, (self.mesh.contact_wires, 1))
+        self.reactions = np.zeros_like(self.found)
+        if self.axes == 3:
+            guess = -catenary.lateral_pulls / self.mesh.contact_wires
+            for _, i, at, _ in self._arms():
+                self.reactions[0, at] = guess[i]
 
     # what acts
 
-    def take_lengths(self, lengths: Floats) -> None:
+    def set_dropper_weights(self, lengths: Floats) -> None:
         """Lengths [m] of the droppers, of which their weight comes."""
         per_length = np.array([d.mass_per_length for d in self.catenary.droppers])
         self._half_weight = GRAVITY * per_length * lengths / 2
@@ -71,18 +73,18 @@ class Hanging:
         masses = np.array([getattr(d, which) for d in self.catenary.droppers], dtype=float)
         return GRAVITY * masses + self._half_weight
 
-    def _longer(self) -> Floats:
+    def _length_ratio(self) -> Floats:
         """Shape (elements,): length of wire, under its nominal tension, over that along the track."""
         wires = self.wires
         rise = self.found[:, wires.dof[wires.left + 1]] - self.found[:, wires.dof[wires.left]]
         arc = np.sqrt(1 + ((rise / wires.length) ** 2).sum(axis=0))
         stretch = 1 + (arc * wires.tension - wires.of_wire("tension")) / wires.of_wire("axial_stiffness")
-        longer: Floats = arc / stretch
-        return longer
+        ratio: Floats = arc / stretch
+        return ratio
 
-    def _loads_along(self) -> Floats:
+    def _distributed_loads(self) -> Floats:
         """[N/m], shape (axes - 1, elements): weight, and in curves the pull to their inside."""
-        weight = self.wires.weight * self._longer()
+        weight = self.wires.weight * self._length_ratio()
         loads = -GRAVITY * weight[None]
         if self.axes == 3:
             loads = np.stack([np.concatenate(curve_pulls(self.catenary, self.mesh)) * weight, loads[0]])
@@ -101,19 +103,19 @@ class Hanging:
         node = self.mesh.first_nodes[wire] + self.mesh.wires[wire].supports[support]
         return int(self.wires.dof[node])
 
-    def _lift(self, wire: int, support: int, arm: SteadyArm) -> float:
+    def _lift(self, at: int, arm: SteadyArm) -> float:
         """[N] upward, of a bar of given inclination under the lateral force that it has."""
-        return abs(float(self._pushed_aside[wire, support])) * tan(arm.inclination or 0.0)
+        return abs(float(self.reactions[0, at])) * tan(arm.inclination or 0.0)
 
-    def _heights_loads(self) -> Floats:
+    def _vertical_loads(self) -> Floats:
         """[N], shape (2 * nodes,), of the wires, what they carry at masts and stitch wires' clamps."""
-        force = self.wires.load(self._loads_along()[-1])
-        for wire, i, at, arm in self._arms():
+        force = self.wires.load(self._distributed_loads()[-1])
+        for _, _, at, arm in self._arms():
             force[at] -= GRAVITY * arm.hanging_mass
             if arm.stiffness is not None and not arm.holds_height:
                 force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_height
             elif not arm.holds_height:
-                force[at] += self._lift(wire, i, arm)
+                force[at] += self._lift(at, arm)
         if self.catenary.stitch_wire:
             clamps = self.mesh.first_nodes[self.mesh.contact_wires] + self.mesh.stitch_ends.ravel()
             np.add.at(force, clamps, -GRAVITY * self.catenary.stitch_wire.clamp_mass)
@@ -121,10 +123,10 @@ class Hanging:
 
     # what holds
 
-    def _held_heights(self) -> Held:
+    def _fixed_heights(self) -> Fixed:
         """Heights [m] that masts hold, by displacement."""
         catenary = self.catenary
-        held: Held = {}
+        held: Fixed = {}
         last = len(catenary.supports) - 1
         for wire in range(self.mesh.contact_wires):
             held |= {self._at_support(wire, i): catenary.contact_wire_height for i in (0, last)}
@@ -133,7 +135,7 @@ class Hanging:
             held[self._at_support(self.mesh.contact_wires, i)] = height
         return held
 
-    def _held_aside(self) -> Held:
+    def _fixed_lateral(self) -> Fixed:
         """Lateral positions [m] that masts hold, by displacement."""
         catenary, held, last = self.catenary, {}, len(self.catenary.supports) - 1
         for i, support in enumerate(catenary.supports):
@@ -147,59 +149,51 @@ class Hanging:
     @cached_property
     def _arm_springs(self) -> Any:
         """Sparse stiffness [N/m] of arms that do not hold the contact wire's height."""
-        from scipy.sparse import coo_matrix
+        from scipy.sparse import diags
 
-        springs = [
-            (at, arm.stiffness) for _, _, at, arm in self._arms() if arm.stiffness and not arm.holds_height
-        ]
-        at, values = [at for at, _ in springs], [value for _, value in springs]
-        return coo_matrix((values, (at, at)), shape=self.wires.stiffness.shape).tocsr()
+        springs = np.zeros(2 * self.wires.nodes)
+        for _, _, at, arm in self._arms():
+            springs[at] = 0.0 if arm.holds_height else arm.stiffness or 0.0
+        return diags(springs).tocsr()
 
     @cached_property
     def _heights(self) -> TautProblem:
         """The wires with their droppers cut, the contact wires held where the droppers were."""
         held = dict(zip(self._lower.tolist(), self.catenary.design_heights.tolist(), strict=True))
-        return self.wires.problem(held | self._held_heights(), self._arm_springs)
+        return self.wires.problem(held | self._fixed_heights(), self._arm_springs)
 
     # to hang
 
-    def hang(self) -> None:
+    def solve_cut_wires(self) -> None:
         """Hang all wires once more, droppers at their design heights, with what is known from before.
 
         First the contact wires, whose droppers' pull then loads the wires above them.
         """
-        force = self._heights_loads()
+        force = self._vertical_loads()
         _, reactions = self._heights.solve(force)
         self.pull = reactions[self._lower] + self._clamps("contact_wire_clamp_mass")
         np.add.at(force, self._upper, -np.maximum(self.pull, 0.0) - self._clamps("messenger_clamp_mass"))
-        self.found[-1], self._vertical = self._heights.solve(force)
+        self.found[-1], self.reactions[-1] = self._heights.solve(force)
         if self.axes == 3:
-            self._place_sideways()
+            self._solve_lateral()
 
-    def _place_sideways(self) -> None:
+    def _solve_lateral(self) -> None:
         """Where the wires hang to the sides, the droppers leaning between them."""
-        from scipy.sparse import coo_matrix
-
         righting = np.maximum(self.pull, 0.0) / np.maximum(self.spread()[:, -1], 1e-3)
-        a, b = self._lower, self._upper
-        entries = np.concatenate([righting, righting, -righting, -righting])
-        place = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
-        springs = coo_matrix((entries, place), shape=self.wires.stiffness.shape).tocsr()
-        problem = self.wires.problem(self._held_aside(), springs)
-        self.found[0], self._lateral = problem.solve(self.wires.load(self._loads_along()[0]))
-        self._read_lateral_arms()
+        index = np.stack([self._lower, self._upper], axis=1)
+        blocks = righting[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        problem = self.wires.problem(
+            self._fixed_lateral(), scattered([(index, blocks)], 2 * self.wires.nodes)
+        )
+        self.found[0], self.reactions[0] = problem.solve(self.wires.load(self._distributed_loads()[0]))
 
-    def _read_lateral_arms(self) -> None:
-        for wire, i, at, _ in self._arms():
-            self._pushed_aside[wire, i] = self._lateral[at]
-
-    def hang_on_droppers(self, lengths: Floats) -> None:
+    def solve_on_droppers(self, lengths: Floats) -> None:
         """One step towards where droppers of given lengths [m], shape (droppers,), make the wires hang.
 
         A Newton step on the stored energy, which is convex: shortened where it would raise it.
         """
-        force = np.stack([self.wires.load(load) for load in self._loads_along()])
-        force[-1] = self._heights_loads()
+        force = np.stack([self.wires.load(load) for load in self._distributed_loads()])
+        force[-1] = self._vertical_loads()
         np.add.at(force[-1], self._lower, -self._clamps("contact_wire_clamp_mass"))
         np.add.at(force[-1], self._upper, -self._clamps("messenger_clamp_mass"))
         step = self._newton_step(force, lengths)
@@ -215,11 +209,7 @@ class Hanging:
         span = self.spread()
         now = np.linalg.norm(span, axis=1)
         self.pull = self.tensions(lengths) * span[:, -1] / now
-        reactions = -self._residual(self.found, force, lengths)
-        self._vertical = reactions[-1]
-        if self.axes == 3:
-            self._lateral = reactions[0]
-            self._read_lateral_arms()
+        self.reactions = -self._residual(self.found, force, lengths)
 
     def _residual(self, found: Floats, force: Floats, lengths: Floats) -> Floats:
         """[N], shape (axes - 1, 2 * nodes), out of balance; what holds a held place is missing."""
@@ -253,10 +243,10 @@ class Hanging:
         index, blocks = np.hstack([lower, upper]), np.block([[blocks, -blocks], [-blocks, blocks]])
         K = (K + scattered([(index, blocks)], K.shape[0])).tocsr()
         free = np.tile(~self.wires.idle, self.axes - 1)
-        held = np.array(list(self._held_heights()), dtype=np.int64) + axis[-1]
+        held = np.array(list(self._fixed_heights()), dtype=np.int64) + axis[-1]
         free[held] = False
         if self.axes == 3:
-            free[list(self._held_aside())] = False
+            free[list(self._fixed_lateral())] = False
         at = np.flatnonzero(free)
         step = np.zeros(free.size)
         step[at] = splu(K[at][:, at].tocsc()).solve(self._residual(self.found, force, lengths).ravel()[at])
@@ -276,7 +266,7 @@ class Hanging:
         tension: Floats = np.maximum(self.stiffness * (now - lengths), 0.0)
         return tension
 
-    def restless(self, what: str, change: Floats) -> SolverError:
+    def unsettled(self, what: str, change: Floats) -> SolverError:
         """The error of passes that come to no end.
 
         change : [m], shape (droppers,) or of ``found``, in the last one
@@ -297,10 +287,11 @@ class Hanging:
         Raises InputError for steady arms that would have to push.
         """
         wires, mesh, n = self.wires, self.mesh, self.wires.nodes
-        loads = self._loads_along()
+        loads = self._distributed_loads()
         slopes = [wires.slopes(u, load) for u, load in zip(self.found, loads, strict=True)]
         points = np.column_stack([wires.x, *self.found[:, :n][:, wires.dof]])
-        arm_forces, support_forces = self._arm_forces(), self._support_forces()
+        supported = [self._at_support(mesh.contact_wires, i) for i in range(len(self.catenary.supports))]
+        arm_forces, support_forces = self._arm_forces(), self.reactions[:, supported].T
         if self.axes == 3:
             check_links(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))
@@ -323,22 +314,12 @@ class Hanging:
         """[N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires."""
         forces = np.zeros((self.mesh.contact_wires, len(self.catenary.supports), self.axes - 1))
         for wire, i, at, arm in self._arms():
-            if self.axes == 3:
-                forces[wire, i, 0] = self._lateral[at]
-            if arm.holds_height:
-                forces[wire, i, -1] = self._vertical[at]
-            elif arm.stiffness is not None:
+            forces[wire, i] = self.reactions[:, at]
+            if not arm.holds_height:
                 raised = self.found[-1, at] - self.catenary.contact_wire_height
-                forces[wire, i, -1] = arm.preload - arm.stiffness * raised
-            else:
-                forces[wire, i, -1] = self._lift(wire, i, arm)
+                lift = self._lift(at, arm) if arm.stiffness is None else arm.preload - arm.stiffness * raised
+                forces[wire, i, -1] = lift
         return forces
-
-    def _support_forces(self) -> Floats:
-        """[N], shape (spans + 1, axes - 1), of the supports on the messenger wire."""
-        at = [self._at_support(self.mesh.contact_wires, i) for i in range(len(self.catenary.supports))]
-        reactions = [self._lateral, self._vertical][3 - self.axes :]
-        return np.stack([reaction[at] for reaction in reactions], axis=1)
 
 
 _SETTLED = 1e-8  # [m] change from pass to pass, where form finding ends
@@ -366,24 +347,24 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     check_lengths(catenary)
     if catenary.gives_dropper_lengths:
         return find_heights(catenary, None, mesh)
-    hanging = Hanging(catenary, mesh or MeshSettings())
+    wires = WireSubstructures(catenary, mesh or MeshSettings())
     lengths = np.zeros(len(catenary.droppers))
     for _ in range(_PASSES):
         before = lengths
-        hanging.hang()
-        check_pulls(catenary, hanging.pull)
-        span = hanging.spread()
+        wires.solve_cut_wires()
+        check_pulls(catenary, wires.pull)
+        span = wires.spread()
         check_room(catenary, span[:, -1])
         distance = np.linalg.norm(span, axis=1)
-        tension = hanging.pull * distance / span[:, -1]
+        tension = wires.pull * distance / span[:, -1]
         check_stretch(catenary, distance, tension)
-        lengths = distance - tension / hanging.stiffness
-        hanging.take_lengths(lengths)
+        lengths = distance - tension / wires.stiffness
+        wires.set_dropper_weights(lengths)
         if np.abs(lengths - before).max(initial=0.0) < _SETTLED:
             break
     else:
-        raise hanging.restless("form finding: dropper lengths still change", lengths - before)
-    return hanging.shape(lengths)
+        raise wires.unsettled("form finding: dropper lengths still change", lengths - before)
+    return wires.shape(lengths)
 
 
 @checked
@@ -400,14 +381,14 @@ def find_heights(
     Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
     """
     lengths = given_lengths(catenary, lengths)
-    hanging = Hanging(catenary.with_dropper_lengths(lengths), mesh or MeshSettings())
-    hanging.take_lengths(lengths)
-    hanging.hang()
+    wires = WireSubstructures(catenary.with_dropper_lengths(lengths), mesh or MeshSettings())
+    wires.set_dropper_weights(lengths)
+    wires.solve_cut_wires()
     for _ in range(_PASSES):
-        before = hanging.found.copy()
-        hanging.hang_on_droppers(lengths)
-        if np.abs(hanging.found - before).max() < _SETTLED:
+        before = wires.found.copy()
+        wires.solve_on_droppers(lengths)
+        if np.abs(wires.found - before).max() < _SETTLED:
             break
     else:
-        raise hanging.restless("static shape: the wires still move", hanging.found - before)
-    return hanging.shape(lengths)
+        raise wires.unsettled("static shape: the wires still move", wires.found - before)
+    return wires.shape(lengths)
