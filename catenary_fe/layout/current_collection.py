@@ -6,7 +6,7 @@ No text of a standard was open to us: limits come from secondary sources, or wer
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 from catenary_fe.layout.arguments import number, one_of
 
@@ -56,11 +56,6 @@ _MEAN_FORCE: dict[tuple[PowerSystem, Bound], tuple[_Parabola, ...]] = {
     ("DC 1.5 kV", "maximum"): (_Parabola(0.00228, 90, above=200),),
     ("DC 1.5 kV", "minimum"): (_Parabola(0.00112, 70, above=200),),
 }
-_SYSTEM_OF: dict[MeanForceRule, PowerSystem] = {
-    "EN 50367 AC": "AC",
-    "EN 50367 DC 3 kV": "DC 3 kV",
-    "EN 50367 DC 1.5 kV": "DC 1.5 kV",
-}
 
 
 def _kmh(speed: float) -> float:
@@ -94,7 +89,8 @@ def target_mean_force(rule: MeanForceRule, speed: float) -> float:
     """
     one_of("rule", rule, get_args(MeanForceRule))
     v = _kmh(number("speed", speed, "m/s", least=0.0))
-    curves = _MEAN_FORCE[_SYSTEM_OF[rule], "maximum"]
+    system = cast(PowerSystem, rule.removeprefix("EN 50367 "))
+    curves = _MEAN_FORCE[system, "maximum"]
     return next((c for c in curves if v > c.above), curves[-1]).at(v)
 
 

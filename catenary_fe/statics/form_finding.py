@@ -162,7 +162,7 @@ class WireSubstructures:
         held = dict(zip(self._lower.tolist(), self.catenary.design_heights.tolist(), strict=True))
         return self.wires.problem(held | self._fixed_heights(), self._arm_springs)
 
-    # to hang
+    # equilibrium
 
     def solve_cut_wires(self) -> None:
         """Hang all wires once more, droppers at their design heights, with what is known from before.
@@ -178,13 +178,12 @@ class WireSubstructures:
             self._solve_lateral()
 
     def _solve_lateral(self) -> None:
-        """Where the wires hang to the sides, the droppers leaning between them."""
+        """Lateral positions of the wires, the droppers leaning between them."""
         righting = np.maximum(self.pull, 0.0) / np.maximum(self.spread()[:, -1], 1e-3)
         index = np.stack([self._lower, self._upper], axis=1)
         blocks = righting[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        problem = self.wires.problem(
-            self._fixed_lateral(), scattered([(index, blocks)], 2 * self.wires.nodes)
-        )
+        leaning = scattered([(index, blocks)], 2 * self.wires.nodes)
+        problem = self.wires.problem(self._fixed_lateral(), leaning)
         self.found[0], self.reactions[0] = problem.solve(self.wires.load(self._distributed_loads()[0]))
 
     def solve_on_droppers(self, lengths: Floats) -> None:
@@ -212,7 +211,7 @@ class WireSubstructures:
         self.reactions = -self._residual(self.found, force, lengths)
 
     def _residual(self, found: Floats, force: Floats, lengths: Floats) -> Floats:
-        """[N], shape (axes - 1, 2 * nodes), out of balance; what holds a held place is missing."""
+        """[N], shape (axes - 1, 2 * nodes), out of balance before the reactions at fixed coordinates."""
         residual = np.stack([f - self.wires.stiffness @ u for f, u in zip(force, found, strict=True)])
         residual[-1] -= self._arm_springs @ found[-1]
         span = self.spread(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,15 +48,12 @@ class MeanForce:
 
     def take_up(self, checkpoint: Checkpoint) -> None:
         """Go on from what a checkpoint carries, and let it carry on."""
-        if checkpoint.kept:
-            self._go_on(checkpoint.kept)
+        if state := checkpoint.kept:
+            self.uplifts, self._runs = state["uplifts"], int(state["runs"])
+            uplifts, means = state["before"]
+            self._before = None if np.isnan(means).any() else (uplifts, means)
+            self._known = None if np.isnan(state["slope"]).any() else state["slope"]
         checkpoint.carried = self.state()
-
-    def _go_on(self, state: Mapping[str, Floats]) -> None:
-        self.uplifts, self._runs = state["uplifts"], int(state["runs"])
-        uplifts, means = state["before"]
-        self._before = None if np.isnan(means).any() else (uplifts, means)
-        self._known = None if np.isnan(state["slope"]).any() else state["slope"]
 
     def given(self) -> list[AnyPantograph]:
         """The pantographs with these uplifts, not asking for a mean force. Raises InputError."""

@@ -112,42 +112,32 @@ def run_sweep(
     or the cluster is not there.
     """
     with open_store(Path(folder) / "cases") as store:
-        return _run_missing(cases, settings, store, jobs, scheduler, retry, progress)
-
-
-def _run_missing(
-    cases: Sequence[SweepCase | BrokenCase],
-    settings: SweepSettings,
-    store: Store,
-    jobs: int,
-    scheduler: str | None,
-    retry: bool,
-    progress: Progress | None,
-) -> list[Record]:
-    records = [
-        _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case.key(settings), retry)
-        for case in cases
-    ]
-    missing = [i for i, record in enumerate(records) if record is None]
-    done = len(cases) - len(missing)
-    if done:
-        _log.info("%d of %d cases are there already", done, len(cases))
-    to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
-    workers = _workers(jobs)
-    if to_run and not scheduler:
-        needs = _largest_demand(list(to_run.values()), settings)
-        workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
-        check_memory(needs, "sweep", workers)
-    tasks = _tasks(to_run, settings, workers)
-    for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
-        for i, record in zip(numbers, found, strict=True):
-            records[i] = record
-            if LOST not in record:
-                store.write(to_run[i].key(settings), record)
-        done += len(numbers)
-        if progress:
-            progress(done, len(cases))
-    return [record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record]
+        records = [
+            _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case.key(settings), retry)
+            for case in cases
+        ]
+        missing = [i for i, record in enumerate(records) if record is None]
+        done = len(cases) - len(missing)
+        if done:
+            _log.info("%d of %d cases are there already", done, len(cases))
+        to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
+        workers = (os.cpu_count() or 1) if jobs == -1 else whole("jobs", jobs, least=1)
+        if to_run and not scheduler:
+            needs = _largest_demand(list(to_run.values()), settings)
+            workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
+            check_memory(needs, "sweep", workers)
+        tasks = _tasks(to_run, settings, workers)
+        for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
+            for i, record in zip(numbers, found, strict=True):
+                records[i] = record
+                if LOST not in record:
+                    store.write(to_run[i].key(settings), record)
+            done += len(numbers)
+            if progress:
+                progress(done, len(cases))
+        return [
+            record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record
+        ]
 
 
 def _kept(store: Store, key: str, retry: bool) -> Record | None:
@@ -167,12 +157,6 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
     slots = min(SLOTS, len(cases)) if settings.method == "linearised" else 1
     mesh = make_mesh(longest.catenary, settings.mesh)
     return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, slots)
-
-
-def _workers(jobs: int) -> int:
-    if jobs != -1:
-        return whole("jobs", jobs, least=1)
-    return os.cpu_count() or 1
 
 
 def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
@@ -338,13 +322,13 @@ def _without_warnings() -> Iterator[None]:
 
 
 def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
-    shape, line = _linearised(cases[0].catenary, settings.mesh, settings.time)
+    line = _linearised(cases[0].catenary, settings.mesh, settings.time)
     records: list[Record] = []
     good: list[RunCase] = []
     for case in cases:
         try:
             positions = case.positions or None
-            good.append(plan_run(shape, case.pantographs, case.speed, positions, settings.time))
+            good.append(plan_run(line.shape, case.pantographs, case.speed, positions, settings.time))
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))
@@ -389,6 +373,5 @@ def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
 
 
 @lru_cache(maxsize=2)
-def _linearised(catenary: Catenary, mesh: MeshSettings, time: TimeSettings) -> tuple[Shape, LinearisedLine]:
-    shape = _shape(catenary, mesh)
-    return shape, LinearisedLine(shape, time)
+def _linearised(catenary: Catenary, mesh: MeshSettings, time: TimeSettings) -> LinearisedLine:
+    return LinearisedLine(_shape(catenary, mesh), time)

@@ -64,22 +64,20 @@ class Line(Parameters):
         common = self.dropper or Dropper(position=0.0)
         droppers = tuple(common.replace(position=(i + 0.5) * gap) for i in range(count))
         sides = [(self.stagger or 0.0) * (-1) ** i for i in range(spans + 1)]
+        stitch_wire = None
+        if self.stitch_wire and self.stitch_wire_length:
+            stitch_wire = StitchWire(**self.stitch_wire.model_dump(), length=self.stitch_wire_length)
         return Catenary(
             name=self.name,
             source=self.source,
             contact_wire=self.contact_wire,
             messenger_wire=self.messenger_wire,
-            stitch_wire=self._stitch_wire(),
+            stitch_wire=stitch_wire,
             spans=(Span(length=self.span_length, droppers=droppers, pre_sag=self.pre_sag),) * spans,
             supports=tuple(Support(steady_arm=steady_arm, stagger=y) for y in sides),
             system_height=self.system_height,
             contact_wire_height=self.contact_wire_height or 5.3,
         )
-
-    def _stitch_wire(self) -> StitchWire | None:
-        if self.stitch_wire is None or self.stitch_wire_length is None:
-            return None
-        return StitchWire(**self.stitch_wire.model_dump(), length=self.stitch_wire_length)
 
 
 @checked
