@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from catenary_fe.layout.arguments import number
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 
 SHORTEST_STEP = 1e-6  # [s] below it a run takes weeks, and its histories more memory than there is
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import Catenary, InputError
 from catenary_fe.layout.arguments import number
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.mesh import MOST_ELEMENTS
 from catenary_fe.layout import InputError, Pantograph, Wire
 from catenary_fe.layout.arguments import instance, number, numbers
-from catenary_fe.layout.frozen import changed_by_copy
-from catenary_fe.layout.parameters import shorten
+from catenary_fe.layout.parameters import changed_by_copy, shorten
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]

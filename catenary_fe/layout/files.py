@@ -15,11 +15,11 @@ from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
+    Lateral,
     NonEmpty,
     Number,
     Parameters,
     Positive,
-    Sideways,
     Text,
     problem_lines,
     shorten,
@@ -164,7 +164,7 @@ class LayoutFile(Parameters):
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWireEntry | None = None
     """at each support between the line's ends; unset: none"""
-    stagger: Sideways = 0.0
+    stagger: Lateral = 0.0
     """[m] of the contact wire at the supports, to the left at the first and then to alternating sides; a
     support that differs may say so"""
     curve_radius: Number | None = None

@@ -239,19 +239,7 @@ class ElasticPantograph(Parameters):
 
     def contact_force(self, elevation: float) -> float:
         """[N] on a wire at an elevation [m] above its nominal height. Raises InputError for what is none."""
-        elevation = number("elevation", elevation, "m")
-        force, stiffness = self.tangent(elevation)
-        return max(0.0, force - stiffness * elevation)
-
-    def tangent(self, elevation: float) -> tuple[float, float]:
-        """F₀ [N] and k [N/m] of the straight law F₀ − k · elevation that holds around an elevation [m]."""
-        if self.force is not None:
-            return self.force, self.stiffness
-        for (low, strong), (high, weak) in pairwise(self.law):
-            if low <= elevation < high:
-                slope = (strong - weak) / (high - low)
-                return strong + slope * low, slope
-        return self.law[0 if elevation < self.law[0][0] else -1][1], 0.0
+        return self.assemble(spatial=False).contact.force(-number("elevation", elevation, "m"))
 
     @property
     def stages(self) -> tuple[Stage, ...]:

@@ -3,18 +3,46 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Self, cast
+from collections.abc import Iterable, Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, Self, TypeVar, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.frozen import refuse_change
 
 GRAVITY = 9.81  # [m/s²]
 LARGEST = 1e15  # in SI units: beyond it, and below its inverse, products of some leave the range of floats
 SMALLEST = 1 / LARGEST
+_Class = TypeVar("_Class", bound=type)
+
+
+def refuse_change(owner: object, name: str, known: Iterable[str], copy: str) -> NoReturn:
+    """Raises InputError for an assignment to an attribute.
+
+    copy : how to make a changed copy
+    """
+    kind, known = type(owner).__name__, list(known)
+    if name in known:
+        raise InputError(f"{kind}.{name} cannot be changed in place; make a changed copy with {copy}")
+    if hasattr(type(owner), name):
+        raise InputError(f"{kind}.{name} follows from the fields, and cannot be set; change those in a copy")
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(known)}"
+    raise InputError(f"{kind} has no '{name}', and cannot be changed in place; {hint}")
+
+
+def changed_by_copy(cls: _Class) -> _Class:
+    """For a frozen dataclass: its refusal of a change is an :class:`InputError` with the remedy."""
+
+    def refuse(self: Any, name: str, _: object = None) -> NoReturn:
+        copy = f"dataclasses.replace(..., {name}=...)"
+        refuse_change(self, name, (field.name for field in fields(self)), copy)
+
+    made: Any = cls
+    made.__setattr__ = made.__delattr__ = refuse
+    return cls
 
 
 def _not_tiny(value: float) -> float:
@@ -27,7 +55,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, l
 Positive = Annotated[
     float, Field(strict=True, allow_inf_nan=False, gt=0, le=LARGEST), AfterValidator(_not_tiny)
 ]
-Sideways = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-10, le=10)]  # [m]; refuses mm
+Lateral = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-10, le=10)]  # [m]; refuses mm
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Text = Annotated[str, Field(strict=True)]
 

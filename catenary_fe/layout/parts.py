@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from catenary_fe.layout.parameters import NonNegative, Number, Parameters, Positive, Sideways, Text, refuse
+from catenary_fe.layout.parameters import Lateral, NonNegative, Number, Parameters, Positive, Text, refuse
 from catenary_fe.theory import Beam
 
 
@@ -251,9 +251,9 @@ class Support(Parameters):
     """registration of the contact wire; unset: the contact wire is free here"""
     system_height: Positive | None = None
     """[m] between the wires at this support; unset: the catenary's"""
-    stagger: Sideways = 0.0
+    stagger: Lateral = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Sideways = 0.0
+    messenger_stagger: Lateral = 0.0
     """[m] of the messenger wire to the left of the track's centre (+y)"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from numpy import isfinite
 
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 
 FAILED = "check failed: "  # begins the warning of a check that fails
 

@@ -21,7 +21,7 @@ from catenary_fe.layout.current_collection import (
     force_limit,
     mean_force_limit,
 )
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.quantities import DIGITS, FORCE, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.layout import Catenary, InputError, counted
 from catenary_fe.layout.arguments import checked, number, numbers, on_the_wire, one_of, whole
-from catenary_fe.layout.frozen import changed_by_copy
-from catenary_fe.layout.parameters import shorten
+from catenary_fe.layout.parameters import changed_by_copy, shorten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, InputError, recorded_pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.check import FAILED, Check, Partial
 from catenary_fe.results.files import ATTRIBUTE, atomic_write, checksum
 from catenary_fe.results.quality import run_checks

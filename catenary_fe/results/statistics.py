@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.quantities import FORCE
 from catenary_fe.results.signal import FilterKind, band_pass, low_pass
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
 from catenary_fe.layout.arguments import checked, number, numbers, on_the_wire, span_numbers, whole
-from catenary_fe.layout.frozen import changed_by_copy
-from catenary_fe.layout.parameters import shorten
+from catenary_fe.layout.parameters import changed_by_copy, shorten
 from catenary_fe.results import Elasticity
 from catenary_fe.statics import Shape
 from catenary_fe.statics.loaded import LoadedLine

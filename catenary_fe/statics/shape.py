@@ -16,7 +16,7 @@ from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.arguments import on_the_wire
-from catenary_fe.layout.frozen import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.statics.schedules import DropperRow, SupportRow, dropper_rows, support_rows
 
 if TYPE_CHECKING:

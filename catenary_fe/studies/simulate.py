@@ -23,8 +23,7 @@ from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
 from catenary_fe.studies.checks import plan_run
-from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
-from catenary_fe.studies.mean_force import MeanForce
+from catenary_fe.studies.linearised import LinearisedLine, MeanForce, aimed, share_of
 from catenary_fe.studies.record import kept_when_stopped, make_run, run_key
 from catenary_fe.studies.resources import check_memory, demand
 

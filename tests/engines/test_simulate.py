@@ -6,8 +6,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.studies.checks import run_warnings
-from catenary_fe.studies.linearised import LinearisedLine
-from catenary_fe.studies.mean_force import MeanForce
+from catenary_fe.studies.linearised import LinearisedLine, MeanForce
 
 # accepted ranges of EN 50318:2002 (secondary source)
 RANGES = {

@@ -13,7 +13,7 @@ from catenary_fe.layout.arguments import checked, number, one_of, whole
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import Pantograph
-from catenary_fe.layout.parameters import Number, Parameters, Positive, Sideways, Text, shorten
+from catenary_fe.layout.parameters import Lateral, Number, Parameters, Positive, Text, shorten
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
 
 
@@ -36,7 +36,7 @@ class Line(Parameters):
     """[m] above the rail, where known"""
     pre_sag: Number = 0.0
     """[m] at mid-span"""
-    stagger: Sideways | None = None
+    stagger: Lateral | None = None
     """[m] to either side, where known"""
     stitch_wire: Wire | None = None
     """with its tension; unset: the line has none"""
