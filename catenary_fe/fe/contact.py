@@ -71,6 +71,22 @@ class Contact:
     position: float
 
 
+@dataclass(frozen=True)
+class BaseLine:
+    """What a pantograph's base follows: the contact wire's design line, straight between its points.
+
+    x : [m], shape (points,), along the track
+    z : [m], shape (points,), above the nominal contact wire height
+    """
+
+    x: Floats
+    z: Floats
+
+    def under(self, placed: PlacedPantograph) -> float:
+        """[m] that the base of a pantograph has risen where it is; 0 where it follows the rail."""
+        return float(np.interp(placed.position, self.x, self.z)) if placed.body.follows else 0.0
+
+
 def place(
     pantographs: Sequence[AnyPantograph], uplifts: Floats, positions: Floats, *, spatial: bool
 ) -> list[PlacedPantograph]:

@@ -69,6 +69,13 @@ def _contact_stiffness(pantograph: AnyPantograph) -> float:
     return pantograph.assemble(spatial=False).contact.stiffness
 
 
+def _base(run: Run, number: int, pantograph: AnyPantograph) -> Floats:
+    """[m], shape (times,): height at which a pantograph's lowest spring is force-free."""
+    if pantograph.base == "rail":
+        return np.full(run.time.size, run.catenary.contact_wire_height)
+    return run.catenary.design_line(run.data["position"].values[number])
+
+
 def _name(run: Run, pantograph: int) -> str:
     return str(run.data["pantograph"].values[pantograph])
 
@@ -117,10 +124,10 @@ def _force_balance(run: Run) -> Iterator[Check]:
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         masses, heights = _chain(run, i, pantograph)
-        base = heights[-1] - run.catenary.contact_wire_height
+        base = heights[-1] - _base(run, i, pantograph)
         lowest, duration, grounded = pantograph.stages[-1], float(run.time[-1]), len(pantograph.stages) == 1
         if grounded:  # strips that share the only spring
-            base = heights.mean(axis=0) - run.catenary.contact_wire_height
+            base = heights.mean(axis=0) - _base(run, i, pantograph)
         pushed = np.trapezoid(uplift - force - lowest.stiffness * base, dx=run.step)
         pushed -= lowest.damping * (base[-1] - base[0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
@@ -159,7 +166,7 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
             continue
         masses, heights = _chain(run, i, pantograph)
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - run.catenary.contact_wire_height])
+        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - _base(run, i, pantograph)])
         stiffness = np.array([stage.stiffness for stage in pantograph.stages])
         damping = np.array([stage.damping for stage in pantograph.stages])
         moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)

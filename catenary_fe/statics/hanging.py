@@ -103,7 +103,7 @@ class Hanging:
         for wire, i, at, arm in self._arms():
             force[at] -= GRAVITY * arm.hanging_mass
             if arm.stiffness is not None and not arm.holds_height:
-                force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_height
+                force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_heights[i]
             elif not arm.holds_height:
                 force[at] += self._lift(wire, i, arm)
         if self.catenary.stitch_wire:
@@ -115,12 +115,12 @@ class Hanging:
 
     def _held_heights(self) -> Held:
         """Heights [m] that masts hold, by displacement."""
-        catenary = self.catenary
+        catenary, heights = self.catenary, self.catenary.contact_wire_heights.tolist()
         held: Held = {}
         last = len(catenary.supports) - 1
         for wire in range(self.mesh.contact_wires):
-            held |= {self._at_support(wire, i): catenary.contact_wire_height for i in (0, last)}
-        held |= {at: catenary.contact_wire_height for _, _, at, arm in self._arms() if arm.holds_height}
+            held |= {self._at_support(wire, i): heights[i] for i in (0, last)}
+        held |= {at: heights[i] for _, i, at, arm in self._arms() if arm.holds_height}
         for i, height in enumerate(catenary.messenger_support_heights.tolist()):
             held[self._at_support(self.mesh.contact_wires, i)] = height
         return held
@@ -320,7 +320,7 @@ class Hanging:
             if arm.holds_height:
                 forces[wire, i, -1] = self._vertical[at]
             elif arm.stiffness is not None:
-                raised = self.found[-1, at] - self.catenary.contact_wire_height
+                raised = self.found[-1, at] - self.catenary.contact_wire_heights[i]
                 forces[wire, i, -1] = arm.preload - arm.stiffness * raised
             else:
                 forces[wire, i, -1] = self._lift(wire, i, arm)
