@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from catenary_fe.engines.exudyn import ExudynModel, exudyn_model
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
     from catenary_fe.fe.wire_problem import (
@@ -59,6 +60,7 @@ _ROOMS = {
     "engines.modal.modes": ("solve_modes",),
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
+    "engines.exudyn": ("ExudynModel", "exudyn_model"),
     "studies.single_wire": ("run_wire",),
     "statics": ("Shape", "find_form", "find_heights"),
     "statics.elasticity": ("StaticState", "elasticity", "solve_statics"),
@@ -110,6 +112,7 @@ __all__ = [
     "Dropper",
     "ElasticPantograph",
     "Elasticity",
+    "ExudynModel",
     "ForceStatistics",
     "InputError",
     "MeshSettings",
@@ -136,6 +139,7 @@ __all__ = [
     "criteria_rows",
     "elasticity",
     "even_nodes",
+    "exudyn_model",
     "find_form",
     "find_heights",
     "graded_nodes",

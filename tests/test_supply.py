@@ -67,7 +67,7 @@ def test_the_package_has_nothing_that_executes_what_it_reads():
     assert len(SOURCES) > 100
     found = {path.name: dangers(path.read_text(encoding="utf-8")) for path in SOURCES}
     # the paper's figures are scripts of the checkout, run as such
-    assert {name: names for name, names in found.items() if names} == {"paper.py": ["subprocess"]}
+    assert {name: names for name, names in found.items() if names} == {"program.py": ["subprocess"]}
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_a_hostile_case_of_a_sweep(bomb, reference_layout, tmp_path):
 
 def test_data_files_are_in_the_package():
     root = resources.files("catenary_fe")
-    for name in ("system/library/pantographs.toml", "views/report/assets/report.html.j2"):
+    for name in ("layout/library/pantographs.toml", "views/report/assets/report.html.j2"):
         assert root.joinpath(name).is_file(), name
     assert np.isfinite(cf.library.pantograph("DSA380").stages[0].mass)
     assert "pickle" in sys.modules  # of this test and of libraries: the search above is of our sources

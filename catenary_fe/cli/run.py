@@ -16,7 +16,7 @@ from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, r
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
 from catenary_fe.cli.verdicts import evaluated, exit_code, with_elasticity
 from catenary_fe.layout import (
-    AnyPantograph,
+    DescribedPantograph,
     InputError,
     PowerSystem,
     RunInterrupted,
@@ -79,9 +79,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     help="Interval of the stored shapes of the whole wires, rounded to time steps, 0 for none; unset: 10 with"
     " -o, which reports and films need.",
 )
-@options.flag(
-    "--energy", "Record energy and check its balance with the method exudyn, too: a quarter slower."
-)
+@options.flag("--energy", "Record energy and check its balance with the method exudyn, too: a tenth slower.")
 @options.flag("--elasticity", "Compute the elasticity of the evaluated spans, too, and keep it with the run.")
 @options.criteria("Judge the run by the limits of this system; exit code 1 on a miss.")
 @options.answer()
@@ -231,7 +229,7 @@ def write_run(
         folder.picture("criteria.png", plot_criteria(rows, title=title))
 
 
-def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[AnyPantograph]:
+def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[DescribedPantograph]:
     """One pantograph a position; a single name serves for all positions."""
     loaded = [load_pantograph(name) for name in names]
     if len(loaded) == 1 and len(positions) > 1:

@@ -252,9 +252,7 @@ def view(layout_or_folder: str, spans: list[int] | None, output: str | None, qui
         raise InputError(f"spans {shown}: the line has spans 1 to {last}")
     if not (quiet or output):
         click.echo("Exudyn's viewer: mouse moves and turns, wheel zooms, Q or Escape closes.", err=True)
-    picture = view_model(
-        shape.catenary, shape.mesh, shape.installation, (min(shown), max(shown)), wait=output is None
-    )
+    picture = view_model(shape, (min(shown), max(shown)), wait=output is None)
     if output:
         save_picture(Path(output), picture)
 

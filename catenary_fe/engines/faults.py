@@ -1,60 +1,15 @@
-"""Where a solve failed, in words of the line: which wire and place, which pantograph, dropper and support."""
+"""Where a solve failed, in words of the line: which pantograph, dropper and support."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]
-_WIRES = "wires"  # key among a system's variables
-
-
-@dataclass(frozen=True)
-class _Span:
-    """A wire's part of a system's coordinates."""
-
-    name: str
-    x: Floats
-    first_node: int
-    width: int
-
-
-def remember_wire(mbs: exu.MainSystem, name: str, x: Floats, first_node: int, width: int) -> None:
-    """Keep what tells a wire's coordinates from others'.
-
-    x : [m], shape (nodes,), along the line
-    first_node : number of its first node
-    width : coordinates of a node
-    """
-    known = dict(mbs.variables).get(_WIRES, [])
-    mbs.variables[_WIRES] = [*known, _Span(name, x, first_node, width)]
-
-
-def place_of_fault(mbs: exu.MainSystem, start: Floats) -> str:
-    """Where the wires went furthest from their start, at the current state; empty where no wire is known.
-
-    start : shape (coordinates,)
-    """
-    found: list[tuple[float, float, str]] = []
-    now = mbs.systemData.GetODE2Coordinates()
-    for wire in dict(mbs.variables).get(_WIRES, []):
-        first = mbs.systemData.GetNodeLTGODE2(wire.first_node)[0]
-        last = first + wire.width * wire.x.size
-        moved = (now[first:last] - start[first:last]).reshape(-1, wire.width)[:, : wire.width // 2]
-        way = np.linalg.norm(moved, axis=1)
-        way[~np.isfinite(way)] = np.inf
-        found.append((float(way.max()), float(wire.x[way.argmax()]), wire.name))
-    if not found:
-        return ""
-    way, x, name = max(found)
-    far = f"by {way:.3g} m" if np.isfinite(way) else "without bound"
-    return f"the solve ran away at {x:.1f} m along the line, where it moved {name} {far}"
 
 
 def place_of_heads(supports: Floats, positions: Sequence[float] | Floats) -> str:

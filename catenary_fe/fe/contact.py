@@ -39,9 +39,13 @@ class ContactPath:
 
     def at(self, position: float) -> tuple[int, Floats]:
         """Number of the element at a place [m] along the track, and weights of its two heights and slopes."""
-        e = int(np.clip(np.searchsorted(self.x, position, side="right") - 1, 0, self.x.size - 2))
-        share = (position - self.x[e]) / (self.x[e + 1] - self.x[e])
+        e, share = self.locate(position)
         return e, hermite(share, self.lengths[e])
+
+    def locate(self, position: float) -> tuple[int, float]:
+        """Number of the element at a place [m] along the track, and the share of its length before it."""
+        e = min(max(int(np.searchsorted(self.x, position, side="right")) - 1, 0), self.x.size - 2)
+        return e, float((position - self.x[e]) / (self.x[e + 1] - self.x[e]))
 
 
 @dataclass(frozen=True)

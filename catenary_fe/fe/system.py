@@ -228,6 +228,13 @@ class System:
         signals = [np.asarray(load.signal(times), dtype=float) for load in self.time_loads]
         return np.reshape(patterns, (-1, self.size)), np.reshape(signals, (-1, times.size))
 
+    def varying(self, time: float) -> Floats:
+        """[N], shape (all,): sum of the loads that vary in time, at a time [s]."""
+        found = np.zeros(self.place.size)
+        for load in self.time_loads:
+            found += float(load.signal(np.array([time]))[0]) * load.pattern
+        return found
+
     def forces(self, moved: Floats, rates: Floats, time: float) -> Floats:
         """[N], shape (free,): all that accelerates the line, but for contacts.
 

@@ -8,10 +8,13 @@ from catenary_fe.layout.files import layout_schema, load_catenary, load_pantogra
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
+    AttachedPantograph,
+    DescribedPantograph,
     ElasticPantograph,
     Panhead,
     Pantograph,
     Stage,
+    recorded_pantograph,
 )
 from catenary_fe.layout.parameters import GRAVITY
 from catenary_fe.layout.preflight import layout_warnings
@@ -23,8 +26,10 @@ __all__ = [
     "GRAVITY",
     "AerodynamicForce",
     "AnyPantograph",
+    "AttachedPantograph",
     "Catenary",
     "CatenaryError",
+    "DescribedPantograph",
     "Dropper",
     "ElasticPantograph",
     "InputError",
@@ -47,5 +52,6 @@ __all__ = [
     "load_catenary",
     "load_pantograph",
     "pantograph_schema",
+    "recorded_pantograph",
     "target_mean_force",
 ]

@@ -128,6 +128,7 @@ def instance(name: str, value: object, kind: type[Any], remedy: str) -> None:
 _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "Catenary": ("a Catenary", "load_catenary reads a file"),
     "Shape": ("a static shape", "give find_form(catenary)"),
+    "ExudynModel": ("a multibody model", "exudyn_model(shape, pantographs) builds one"),
     "Run": ("a run", "simulate makes one, load_run reads one"),
     "Modes": ("modes of a line", "give solve_modes(shape)"),
     "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
@@ -138,7 +139,10 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "Pantograph": ("a Pantograph", "such as library.pantograph('DSA250')"),
     "WireProblem": ("a WireProblem", "give WireProblem(wire=..., x=...)"),
 }
-_UNIONS = {"AnyPantograph": ("Pantograph", "ElasticPantograph")}
+_UNIONS = {
+    "DescribedPantograph": ("Pantograph", "ElasticPantograph"),
+    "AnyPantograph": ("Pantograph", "ElasticPantograph", "AttachedPantograph"),
+}
 _PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", lambda v: isinstance(v, Real) and not isinstance(v, bool | np.bool_)),
     "int": ("a whole number", lambda v: isinstance(v, Integral) and not isinstance(v, bool)),

@@ -13,7 +13,7 @@ from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.pantograph import AnyPantograph, ElasticPantograph, Pantograph
+from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
     NonEmpty,
     Number,
@@ -331,7 +331,7 @@ def read_layout(path: str | Path) -> dict[str, Any]:
 
 
 @checked
-def load_pantograph(name_or_path: str | Path) -> AnyPantograph:
+def load_pantograph(name_or_path: str | Path) -> DescribedPantograph:
     """A pantograph from a TOML file, or from the library by its name.
 
     A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph.
@@ -353,7 +353,7 @@ def layout_schema() -> dict[str, Any]:
 
 def pantograph_schema() -> dict[str, Any]:
     """JSON Schema of a pantograph file, of masses or elastic."""
-    return TypeAdapter(AnyPantograph).json_schema() | {"title": "catenary_fe pantograph"}
+    return TypeAdapter(DescribedPantograph).json_schema() | {"title": "catenary_fe pantograph"}
 
 
 def _checked(record: dict[str, Any], model: type[_Model], path: Path) -> _Model:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import field_validator, model_validator
 
@@ -300,4 +301,77 @@ class ElasticPantograph(Parameters):
         """None: the law decides the mean force."""
 
 
-AnyPantograph = Pantograph | ElasticPantograph
+class AttachedPantograph(Parameters):
+    """What results record of a pantograph that a script made of bodies of its own in the multibody model."""
+
+    attached: Literal[True] = True
+    """tells it from others in a record"""
+    name: Text
+    """what tables and pictures call it"""
+    source: Text = "bodies of a script's own in the multibody model"
+    """where the numbers come from, and how sure they are"""
+    contact_stiffness: Positive
+    """[N/m] between each strip and contact wire, no tension"""
+    contact_damping: NonNegative = 0.0
+    """[N s/m] beside the contact stiffness, never pulling"""
+
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """None that are known."""
+        return ()
+
+    @property
+    def head(self) -> None:
+        """None that is known."""
+        return None
+
+    @property
+    def panhead(self) -> Panhead:
+        """The usual one."""
+        return Panhead()
+
+    def assemble(self, *, spatial: bool) -> Substructure:
+        """Raises InputError: only the script that made the bodies knows them."""
+        raise InputError(
+            f"{self.name}: {self.source}, which no record knows; run the script again that made them"
+        )
+
+    def in_words(self) -> list[tuple[str, str]]:
+        """Names and values, for a table."""
+        return [
+            ("source", self.source),
+            ("contact", f"{self.contact_stiffness:g} N/m, {self.contact_damping:g} N s/m, no tension"),
+        ]
+
+    def static_uplift(self, speed: float) -> float:
+        """[N] that a run adds: none, the bodies have loads of their own."""
+        return 0.0
+
+    def with_uplift(self, uplift: float) -> Self:
+        """Itself."""
+        return self
+
+    def target_mean_force(self, speed: float) -> None:
+        """None: its loads decide the mean force."""
+
+
+DescribedPantograph = Pantograph | ElasticPantograph
+AnyPantograph = DescribedPantograph | AttachedPantograph
+
+
+def recorded_pantograph(record: dict[str, Any]) -> AnyPantograph:
+    """A pantograph from its record in a result. Raises pydantic's ValidationError for what is none."""
+    kind = Pantograph if "stages" in record else ElasticPantograph
+    return (AttachedPantograph if "attached" in record else kind).model_validate(record)
+
+
+def check_pantographs(pantographs: object, *, least: int = 1) -> None:
+    """Raises InputError for what is not a list of pantographs, or of too few."""
+    remedy = "give a list of pantographs, such as [library.pantograph('DSA250')]"
+    if isinstance(pantographs, str) or not isinstance(pantographs, Sequence):
+        raise InputError(f"pantographs = {shorten(pantographs)}: {remedy}")
+    if len(pantographs) < least:
+        raise InputError("pantographs is empty; give at least one")
+    for i, pantograph in enumerate(pantographs, start=1):
+        if not isinstance(pantograph, AnyPantograph):
+            raise InputError(f"pantograph {i} = {shorten(pantograph)}: {remedy}")

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph, read_layout
-from catenary_fe.layout.pantograph import AnyPantograph
+from catenary_fe.layout.pantograph import DescribedPantograph
 from catenary_fe.layout.parameters import problem_lines
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
@@ -50,7 +50,7 @@ class Variable:
             raise InputError(*(f"{said}: {line}" for line in error.problems)) from None
 
 
-def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> AnyPantograph:
+def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> DescribedPantograph:
     """A pantograph of the library or a file with these values; keys of the layout are left out.
 
     Raises InputError for a place that does not exist and for values that break a rule.
@@ -122,7 +122,7 @@ def unit_of(place: str) -> str:
     """Unit of the value at a place, such as "N/m"; empty where it has none."""
     models: list[type[BaseModel]] = [LayoutFile]
     if place.startswith(PANTOGRAPH):
-        models, place = list(get_args(AnyPantograph)), place.removeprefix(PANTOGRAPH)
+        models, place = list(get_args(DescribedPantograph)), place.removeprefix(PANTOGRAPH)
     return next((unit for model in models if (unit := _unit_in(model, place))), "")
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph, Catenary, ElasticPantograph, InputError, Pantograph
+from catenary_fe.layout import AnyPantograph, Catenary, InputError, recorded_pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
 from catenary_fe.layout.frozen import changed_by_copy
 from catenary_fe.results.check import FAILED, Check, Partial
@@ -72,7 +72,7 @@ class Run:
     def pantographs(self) -> tuple[AnyPantograph, ...]:
         """The pantographs that ran, in the order of the data."""
         records = json.loads(self.data.attrs["pantographs"])
-        return tuple((Pantograph if "stages" in p else ElasticPantograph).model_validate(p) for p in records)
+        return tuple(recorded_pantograph(record) for record in records)
 
     @property
     def evaluated_spans(self) -> tuple[int, ...]:

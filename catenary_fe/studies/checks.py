@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
-from catenary_fe.layout.parameters import shorten
 from catenary_fe.layout.preflight import layout_warnings, pantograph_warnings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import Shape
@@ -34,18 +33,6 @@ def check_speed(speed: float) -> None:
             f"speed = {speed:g} m/s is {3.6 * speed:g} km/h: below 5 km/h, it looks like the wrong unit;"
             " the interface takes m/s (km/h divided by 3.6), --speed-kmh takes km/h"
         )
-
-
-def check_pantographs(pantographs: object) -> None:
-    """Raises InputError for what is not a list of pantographs."""
-    remedy = "give a list of pantographs, such as [library.pantograph('DSA250')]"
-    if isinstance(pantographs, str) or not isinstance(pantographs, Sequence):
-        raise InputError(f"pantographs = {shorten(pantographs)}: {remedy}")
-    if not pantographs:
-        raise InputError("pantographs is empty; give at least one")
-    for i, pantograph in enumerate(pantographs, start=1):
-        if not isinstance(pantograph, AnyPantograph):
-            raise InputError(f"pantograph {i} = {shorten(pantograph)}: {remedy}")
 
 
 def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float, end: float) -> None:

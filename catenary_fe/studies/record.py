@@ -35,8 +35,13 @@ def make_run(
     history: History,
     warnings: Sequence[str],
     method: str,
+    *,
+    scripted: bool = False,
 ) -> Run:
-    """Label what a run recorded, and note where it comes from."""
+    """Label what a run recorded, and note where it comes from.
+
+    scripted : whether a script may have changed the model
+    """
     import xarray as xr
 
     catenary, pantographs, speed = shape.catenary, case.pantographs, case.speed
@@ -80,6 +85,9 @@ def make_run(
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, speed, time, method)
     attributes["warnings"] = json.dumps([*warnings, *_brief(history.notes)])
+    if scripted:
+        attributes["model"] = "of a script"
+        attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["model"])
     return Run(xr.Dataset(variables, coordinates, attributes))
 
 
@@ -172,13 +180,17 @@ def run_key(
     """All that decides a nonlinear run's result, and the versions that computed it."""
     return {
         "form": CHECKPOINT_FORM,
-        "layout": hashlib.sha256(shape.catenary.model_dump_json().encode()).hexdigest(),
+        "layout": _sha256(shape.catenary.model_dump_json()),
         "pantographs": [p.model_dump(mode="json") for p in pantographs],
         "speed": speed,
         "positions": start.tolist(),
         "settings": {"mesh": asdict(shape.mesh_settings), "time": asdict(time), "store_wire": store_wire},
         "versions": {name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy", "numba")},
     }
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _provenance(
@@ -198,6 +210,6 @@ def _provenance(
         "catenary": catenary,
         "pantographs": records,
         "settings": settings,
-        "input_sha256": hashlib.sha256(inputs.encode()).hexdigest(),
+        "input_sha256": _sha256(inputs),
         "versions": json.dumps({name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy")}),
     }

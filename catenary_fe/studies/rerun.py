@@ -14,7 +14,7 @@ from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.layout import InputError
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape, find_form
-from catenary_fe.studies.simulate import Method, simulate
+from catenary_fe.studies.simulate import OF_A_SCRIPT, Method, simulate
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,13 @@ class Rerun:
 def rerun(run: Run, progress: Callable[[float], None] | None = None) -> Rerun:
     """Run again what a run recorded: layout, pantographs, speed, starts, mesh and time settings.
 
-    Raises InputError for a partial run, and a record that this version does not understand.
+    Raises InputError for a partial run, one of a model that a script may have changed, and a record that
+    this version does not understand.
     """
     if run.partial:
         raise InputError(f"{run.partial}: start it again with the command in its inputs.json")
+    if "model" in run.data.attrs:
+        raise InputError(f"the run was {OF_A_SCRIPT}")
     shape, again = _again(run, progress)
     if again.time.size != run.time.size:
         raise InputError(f"the repeated run has {again.time.size} times, not {run.time.size}: other settings")

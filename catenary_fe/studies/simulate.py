@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,19 +19,27 @@ from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted, counted
 from catenary_fe.layout.arguments import checked, number, numbers, one_of
+from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
-from catenary_fe.studies.checks import check_heads, check_pantographs, check_speed, run_warnings
+from catenary_fe.studies.checks import check_heads, check_speed, run_warnings
 from catenary_fe.studies.linearised import LinearisedLine, aimed, share_of
 from catenary_fe.studies.mean_force import MeanForce
 from catenary_fe.studies.partial import kept_when_stopped
 from catenary_fe.studies.record import make_run, run_key
 from catenary_fe.studies.resources import check_memory, demand
 
+if TYPE_CHECKING:
+    from catenary_fe.engines.exudyn.build import ExudynModel
+
 Floats = NDArray[np.float64]
 
 Method = Literal["nonlinear", "linearised", "exudyn"]
 
+OF_A_SCRIPT = (
+    "computed with a multibody model of a script: what the script changed or attached is not in this record;"
+    " to repeat the run, repeat the script"
+)
 AIMING = 0.1  # share of linearised runs in the work of one that follows them
 
 Drive = Callable[[RunCase, Floats, Progress | None, Checkpoint | None], History]
@@ -64,6 +72,7 @@ def simulate(
     method: Method = "nonlinear",
     energy: bool = False,
     checkpoint: str | Path | None = None,
+    model: ExudynModel | None = None,
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
@@ -80,30 +89,40 @@ def simulate(
         compare with; "linearised" about the static state, many times faster: slack droppers and contact are
         solved in each step, large motions are not there. It warns where they matter.
     energy : with the method "exudyn", record energy, work and losses of the whole system, which a check then
-        judges, a quarter slower; runs with the method "nonlinear" always do
+        judges, a tenth slower; runs with the method "nonlinear" always do
     checkpoint : file that keeps the state of a run with the method "nonlinear", every half a minute: started
         again, the same run goes on from it, with the same result. It is removed at the end
+    model : with the method "exudyn", the multibody model of this shape and these pantographs to run
+        (:func:`exudyn_model`), with what a script changed in it and attached to it; positions count attached
+        pantographs last
 
-    Raises InputError for a speed in the wrong unit, energies or a checkpoint of another method, a checkpoint
-    of another run, a run that would end beyond the line or take more memory than there is, a pantograph that
-    the air pushes down or a contact wire that leaves the head sideways, SolverError where a solve fails or
-    the mean force is not reached, RunInterrupted after Ctrl-C; both have the run until then as ``partial``.
+    Raises InputError for a speed in the wrong unit, energies, a checkpoint or a model of another method, a
+    checkpoint of another run, a model of another line, a run that would end beyond the line or take more
+    memory than there is, a pantograph that the air pushes down or a contact wire that leaves the head
+    sideways, SolverError where a solve fails or the mean force is not reached, RunInterrupted after Ctrl-C;
+    both have the run until then as ``partial``.
     """
-    check_pantographs(pantographs)
+    runs: Sequence[AnyPantograph] = pantographs
+    if model is not None:
+        _check_model(model, shape, pantographs, method, energy=energy)
+        runs = model.records
+    check_pantographs(runs)
     time = time or TimeSettings()
     _check_options(speed, method, energy, time, store_wire)
     if checkpoint is not None and method != "nonlinear":
         raise InputError(
             f"checkpoint {checkpoint}: only runs with the method nonlinear keep one; leave it out"
         )
-    plan = plan_run(shape, len(pantographs), positions)
+    plan = plan_run(shape, len(runs), positions)
     check_heads(shape, pantographs, float(plan.start.min()), float(plan.start.max() + plan.distance))
     warnings = run_warnings(shape, pantographs, speed, plan.start, time)
     if method == "linearised" and time.tolerance != TimeSettings().tolerance:
         warnings.append(
             f"tolerance = {time.tolerance:g} has no effect: linearised runs have no Newton iteration"
         )
-    case = RunCase(pantographs, speed, plan.start, plan.distance, warnings)
+    if model is not None:
+        warnings.append(OF_A_SCRIPT)
+    case = RunCase(runs, speed, plan.start, plan.distance, warnings)
     _check_room(shape, case, time, store_wire, method)
     for warning in warnings:
         _log.warning(warning)
@@ -111,16 +130,16 @@ def simulate(
         return _told(_linearised(shape, time, store_wire, case, progress), len(warnings))
     set_up = partial(_compiled, shape, time, store_wire)
     if method == "exudyn":
-        set_up = partial(_by_exudyn, shape, time, store_wire, energy)
+        set_up = partial(_by_exudyn, shape, time, store_wire, energy, model)
 
     def label(uplifts: Floats, history: History) -> Run:
-        return make_run(shape, case, uplifts, time, history, warnings, method)
+        return make_run(shape, case, uplifts, time, history, warnings, method, scripted=model is not None)
 
     keeper = None
     if checkpoint is not None:
         keeper = Checkpoint(checkpoint, run_key(shape, pantographs, speed, time, plan.start, store_wire))
-    force = MeanForce(pantographs, speed)
-    if force.sought and not (keeper and keeper.kept):
+    force = MeanForce(runs, speed)
+    if force.sought and not (keeper and keeper.kept) and len(runs) == len(pantographs):
         force, progress = _aimed(shape, case, time, progress)
     return _told(_until_mean_force(case, time, force, set_up, label, progress, keeper), len(warnings))
 
@@ -215,22 +234,31 @@ def _compiled(shape: Shape, time: TimeSettings, store_wire: float | None) -> Dri
     return NonlinearEngine(shape.system, time, store_wire).run
 
 
-def _by_exudyn(shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool) -> Drive:
-    from catenary_fe.engines.exudyn.run import Trip, drive
-    from catenary_fe.engines.tension import INTERVAL
+def _by_exudyn(
+    shape: Shape, time: TimeSettings, store_wire: float | None, energy: bool, model: ExudynModel | None
+) -> Drive:
+    from catenary_fe.engines.exudyn.run import ExudynEngine
 
-    every = max(INTERVAL, time.step) if energy else None
+    return ExudynEngine(shape, time, store_wire, energy=energy, model=model).run
 
-    def drive_it(
-        case: RunCase, uplifts: Floats, progress: Progress | None, checkpoint: Checkpoint | None
-    ) -> History:
-        assert checkpoint is None
-        steps = case.steps(time.step)
-        trip = Trip(case.speed, case.start, steps, time, wire_interval=store_wire, energy_interval=every)
-        pairs = list(zip(case.pantographs, uplifts.tolist(), strict=True))
-        return drive(shape.catenary, shape.mesh, shape.installation, pairs, trip, progress)
 
-    return drive_it
+def _check_model(
+    model: ExudynModel, shape: Shape, pantographs: Sequence[AnyPantograph], method: Method, *, energy: bool
+) -> None:
+    """Raises InputError for a model of another line or method, or energies that a changed one has not."""
+    if method != "exudyn":
+        raise InputError(f"model with the method {method}: only the method 'exudyn' runs a multibody model")
+    if model.shape is not shape:
+        raise InputError("model is of another shape; give the one that exudyn_model was given")
+    built = [parts.record for parts in model.pantographs if parts.substructure]
+    if list(pantographs) != built:
+        names = ", ".join(p.name for p in built) or "none"
+        raise InputError(f"pantographs are not those of the model ({names}); give the same to both")
+    if energy:
+        raise InputError(
+            "energy: not of a model that a script may have changed, whose springs and masses are not those of"
+            " the layout; leave it out"
+        )
 
 
 def plan_run(shape: Shape, count: int, positions: Sequence[float] | None) -> Plan:

@@ -34,11 +34,11 @@ def nonlinear(line: NonlinearEngine, seconds: float) -> float:
 
 
 def exudyn(shape: cf.Shape, seconds: float) -> float:
-    from catenary_fe.engines.exudyn.run import Trip, drive
+    from catenary_fe.engines.exudyn.run import ExudynEngine
 
-    trip = Trip(SPEED, np.array([START]), round(seconds / STEP), cf.TimeSettings())
     head = cf.library.pantograph("EN 50318:2002")
-    drive(shape.catenary, shape.mesh, shape.installation, [(head, 120.0)], trip)
+    case = RunCase([head], SPEED, np.array([START]), seconds * SPEED)
+    ExudynEngine(shape).run(case, np.array([120.0]))
     return seconds
 
 

@@ -205,7 +205,7 @@ SWEEP = ("sweep", "LAYOUT", *PANTOGRAPH, "--speed-kmh", "200", "-o", "unused")
 AT_ODDS = {  # options that would do nothing beside others, and what is said
     "shapes that nothing keeps": ((*RUN, "--store-wire-ms", "5"), 2, "has no effect without -o"),
     "a checkpoint of another method": (
-        (*RUN, "--method", "linearised", "--checkpoint", "state"), 3, "only compiled runs with the method"
+        (*RUN, "--method", "linearised", "--checkpoint", "state"), 3, "only runs with the method"
     ),
     "an energy that is not there": ((*RUN, "--method", "linearised", "--energy"), 3, "do not record it"),
     "more positions than pantographs": (

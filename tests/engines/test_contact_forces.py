@@ -17,7 +17,7 @@ import catenary_fe as cf
 from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.compiled import plain
 from catenary_fe.engines.contact_solver import one_way, solve_one_way, solve_points
-from catenary_fe.engines.exudyn.run import Trip, drive
+from catenary_fe.engines.exudyn.run import ExudynEngine
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.linearised import doubts
 from catenary_fe.engines.linearised.arrays import SteadyArmBars
@@ -45,11 +45,8 @@ class Ride(NamedTuple):
         return [(self.pantograph, self.pantograph.uplift_force)]
 
     def exudyn(self):
-        line = self.shape.catenary
-        trip = Trip(
-            SPEED, np.array([self.start]), self.steps, TIGHT, wire_interval=0.01, energy_interval=0.01
-        )
-        return drive(line, self.shape.mesh, self.shape.installation, self.pairs, trip)
+        run = ExudynEngine(self.shape, TIGHT, 0.01, energy=True)
+        return drive_engine(run, self.pairs, SPEED, np.array([self.start]), self.steps)
 
     def nonlinear(self):
         run = NonlinearEngine(self.shape.system, TIGHT, 0.01)

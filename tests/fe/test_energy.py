@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.engines.exudyn.run import Trip, drive
+from catenary_fe.engines.base import RunCase
+from catenary_fe.engines.exudyn.run import ExudynEngine
 
 
 @pytest.fixture(scope="module")
@@ -17,9 +18,9 @@ def undamped(short, pantograph):
 def balance(shape, pantograph, step, radius):
     """Largest difference between work put in and energy gained, and the work."""
     time = cf.TimeSettings(step=step, tolerance=1e-6, spectral_radius=radius)
-    trip = Trip(300 / 3.6, np.array([10.0]), round(2 / step), time, energy_interval=0.01)
-    history = drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 120.0)], trip)
-    driven = history.driven_work[:: round(0.01 / step)]
+    case = RunCase([pantograph], 300 / 3.6, np.array([10.0]), 2 * 300 / 3.6)
+    history = ExudynEngine(shape, time, energy=True).run(case, np.array([120.0]))
+    driven = history.driven_work[:: round(0.05 / step)]
     gained = history.energy - history.energy[0]
     base = history.mass_heights[0][-1]
     uplift = 120 * (base - base[0])  # counted as stored by the meter, as work by the field

@@ -7,11 +7,11 @@ from pathlib import Path
 import exudyn as exu
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
-from catenary_fe.engines.exudyn.model import build_model
-from catenary_fe.engines.exudyn.solver import release, solve_static
+from catenary_fe.engines.exudyn.solver import solve_static
 from catenary_fe.fe.assembly import assemble
 from catenary_fe.fe.system import System
 
@@ -121,10 +121,9 @@ def assembled_by_exudyn(mbs: exu.MainSystem, moved: np.ndarray) -> Assembled:
 @pytest.fixture(scope="module")
 def exudyn_at(shape) -> Iterator[Callable[[np.ndarray], Assembled]]:
     """What Exudyn assembles of the line, at given displacements."""
-    mbs = build_model(shape.catenary, shape.mesh, shape.installation).mbs
-    mbs.Assemble()
-    yield lambda moved: assembled_by_exudyn(mbs, moved)
-    release(mbs)
+    model = cf.exudyn_model(shape)
+    yield lambda moved: assembled_by_exudyn(model.mbs, moved)
+    model.release()
 
 
 def assert_equal_to_rounding(system: System, theirs: Assembled, moved: np.ndarray) -> None:
@@ -162,13 +161,34 @@ def test_a_dropper_that_is_stiffer_by_a_thousandth_is_seen(system, moved, exudyn
         assert_equal_to_rounding(other, theirs, moved)
 
 
+def test_further_linear_stiffness_and_damping_reach_exudyn(shape, system, moved):
+    """A spring and damper between contact and messenger wire in the middle of the line."""
+    wire, messenger = system.wires[0], next(w for w in system.wires if not w.contact)
+    middle = wire.x[-1] / 2
+    nodes = [w.first + int(np.abs(w.x - middle).argmin()) for w in (wire, messenger)]
+    row = np.zeros((1, system.place.size))
+    row[0, 2 * system.axes * np.array(nodes) + system.axes - 1] = 1.0, -1.0
+    between = csr_matrix(row.T @ row)
+    other = replace(system, linear_stiffness=5e4 * between, linear_damping=300.0 * between)
+    changed = replace(shape)
+    vars(changed)["system"] = other
+    model = cf.exudyn_model(changed)
+    at_rest, theirs = (assembled_by_exudyn(model.mbs, q) for q in (0 * moved, moved))
+    model.release()
+    assert_equal_to_rounding(other, theirs, moved)
+    with pytest.raises(AssertionError):
+        assert_equal_to_rounding(system, theirs, moved)
+    damping = other.damping() + other.taut_damping()
+    assert abs(damping - at_rest.damping).max() < 2e-8 * np.abs(at_rest.damping).max()
+
+
 def test_exudyn_finds_the_same_equilibrium(shape):
-    model = build_model(shape.catenary, shape.mesh, shape.installation)
-    model.mbs.Assemble()
+    model = cf.exudyn_model(shape)
     solve_static(model.mbs, what="the same line")
     found = model.mbs.systemData.GetODE2Coordinates()
-    tensions = model.dropper_forces()
-    release(model.mbs)
+    force = exu.OutputVariableType.ForceLocal
+    tensions = [model.mbs.GetObjectOutput(dropper, force) for dropper in model.droppers]
+    model.release()
     assert np.abs(found).max() < 1e-6  # [m] from where the wires were installed
     assert tensions == pytest.approx(shape.dropper_forces, abs=0.1)
 

@@ -3,26 +3,16 @@
 import numpy as np
 import pytest
 
-from catenary_fe.engines.exudyn.model import build_model
-from catenary_fe.engines.exudyn.solver import release, solve_static
 from catenary_fe.engines.tension import TensionGauge
 
 
-def gauge_of(model):
-    return TensionGauge(model.system)
-
-
 @pytest.fixture(scope="module")
-def model(short_shape):
-    built = build_model(short_shape.catenary, short_shape.mesh, short_shape.installation)
-    built.mbs.Assemble()
-    solve_static(built.mbs, what="test")
-    yield built
-    release(built.mbs)
+def system(short_shape):
+    return short_shape.system
 
 
-def test_at_rest_the_wires_have_their_tension(model, short):
-    tensions = gauge_of(model).tensions(model.mbs.systemData.GetODE2Coordinates())
+def test_at_rest_the_wires_have_their_tension(system, short):
+    tensions = TensionGauge(system).tensions(0 * system.reference)
     contact, messenger = np.split(tensions, 2)
     assert contact == pytest.approx(short.contact_wire.tension, rel=1e-4)
     # a wire that sags carries its horizontal pull over the cosine of its slope
@@ -30,15 +20,15 @@ def test_at_rest_the_wires_have_their_tension(model, short):
     assert (messenger > short.messenger_wire.tension).all()
 
 
-def test_a_stretched_wire(model, short):
+def test_a_stretched_wire(system, short):
     """All nodes of the contact wire's last span move on by 0.1 ‰: EA times that, and no other span."""
-    gauge, q = gauge_of(model), model.mbs.systemData.GetODE2Coordinates().copy()
+    gauge, q = TensionGauge(system), 0 * system.reference
     before = gauge.tensions(q)
-    x, width, ends = model.contact.line.x, model.node_width, model.mesh.wires[0].supports
-    first = int(ends[-2])
-    nodes = np.arange(first, x.size)
-    q[width * nodes] += 1e-4 * (x[nodes] - x[first])
-    q[width * nodes + model.axes] += 1e-4
+    wire, width = system.wires[0], 2 * system.axes
+    first = int(wire.supports[-2])
+    nodes = np.arange(first, wire.x.size)
+    q[width * nodes] += 1e-4 * (wire.x[nodes] - wire.x[first])
+    q[width * nodes + system.axes] += 1e-4
     change = gauge.tensions(q) - before
     assert change[3] == pytest.approx(1e-4 * short.contact_wire.axial_stiffness, rel=2e-3)
     # its first node's slope reaches into the element before

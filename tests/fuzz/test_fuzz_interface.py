@@ -91,6 +91,9 @@ CALLS = {
     "simulate: method": (simulated("method"), CHOICE),
     "simulate: energy": (simulated("energy"), ("x", 1, None, [], ARRAY)),
     "simulate: checkpoint": (simulated("checkpoint"), (3, [], THING, b"x")),
+    "simulate: model": (simulated("model"), OBJECT[:2]),
+    "exudyn_model": (lambda g, b: cf.exudyn_model(b), OBJECT),
+    "exudyn_model: pantographs": (lambda g, b: cf.exudyn_model(g.shape, b), (3, "x", [3], [None])),
     "solve_statics": (lambda g, b: cf.solve_statics(b), OBJECT),
     "solve_statics: forces": (
         lambda g, b: cf.solve_statics(g.shape, b), ("x", 3, [3.0], [(1.0,)], [("x", 1.0)], [(1e4, 1.0)])

@@ -55,7 +55,7 @@ TARGETS = {  # module: tests that are quick and touch it
     "catenary_fe.statics.cut_wires": _STATICS,
     "catenary_fe.statics.rules": _STATICS,
     "catenary_fe.engines.exudyn.contact": [
-        "tests/fe/test_contact.py",
+        "tests/engines/test_exudyn_contacts.py",
         _CONTACT,
         "tests/engines/test_elastic_pantograph.py",
     ],

@@ -6,7 +6,8 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.run import write_run
-from catenary_fe.engines.exudyn.run import Trip, drive
+from catenary_fe.engines.base import RunCase
+from catenary_fe.engines.exudyn.run import ExudynEngine
 
 
 @pytest.fixture(scope="module")
@@ -26,8 +27,8 @@ def test_a_flat_line_gives_the_same_contact_force(flat, pantograph):
 
 def settled(shape, pantograph, seconds=0.02):
     """A pantograph that has just come to rest under the wire, 14 m behind a support."""
-    trip = Trip(0.01, np.array([69.0]), round(seconds / 1e-3), cf.TimeSettings())
-    return drive(shape.catenary, shape.mesh, shape.installation, [(pantograph, 140.0)], trip)
+    case = RunCase([pantograph], 0.01, np.array([69.0]), 0.01 * seconds)
+    return ExudynEngine(shape).run(case, np.array([140.0]))
 
 
 def test_a_rolling_head_tilts_under_an_eccentric_wire(staggered_shape, chain):
@@ -82,10 +83,10 @@ def test_energy_of_an_undamped_run_in_space(staggered, chain):
     supports = tuple(s.replace(messenger_damping=0.0) for s in staggered.supports)
     shape = cf.find_form(staggered.replace(damping=cf.RayleighDamping(), supports=supports))
     time = cf.TimeSettings(step=1e-3, tolerance=1e-6, spectral_radius=1.0)
-    trip = Trip(250 / 3.6, np.array([15.0]), 1500, time, energy_interval=0.01)
-    history = drive(shape.catenary, shape.mesh, shape.installation, [(free, 140.0)], trip)
+    case = RunCase([free], 250 / 3.6, np.array([15.0]), 1.5 * 250 / 3.6)
+    history = ExudynEngine(shape, time, energy=True).run(case, np.array([140.0]))
     gained = history.energy - history.energy[0]
-    driven = history.driven_work[::10]
+    driven = history.driven_work[::50]
     base = history.mass_heights[0][-1]
     work = np.abs(driven).max() + np.abs(140 * (base - base[0])).max()
     assert work > 10

@@ -1,142 +1,298 @@
-"""The contact that moves along the wires, from step to step."""
+"""Pantographs in the multibody model, and their contacts, which move along the wires from step to step."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import exudyn as exu
+import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.exudyn.pantograph import ContactItems, PantographItems, Track
-from catenary_fe.engines.exudyn.wire import WireItems
-from catenary_fe.layout import ElasticPantograph
+from catenary_fe.engines.exudyn.laws import push_only
+from catenary_fe.fe.system import System
+from catenary_fe.layout import AnyPantograph, AttachedPantograph
+from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
 
 Floats = NDArray[np.float64]
-_PIECES, _HALVINGS = 6, 40  # straight pieces of a law to try for the start, then halvings of its force
+Integers = NDArray[np.int64]
+
+_TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
+    1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+    2: [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
+}
+_HEAVE, _ROLL = 2, 3  # coordinates of a rigid body's node
 
 
-class MovingContact:
-    """Moves each pantograph's contact points along the wires, from step to step."""
+@dataclass(frozen=True)
+class WireParts:
+    """A wire: its name, numbers of its nodes and elements, and the nodes' stations x [m], shape (nodes,)."""
 
-    def __init__(self, track: Track, pantographs: Sequence[PantographItems]) -> None:
-        self._mbs = track.mbs
-        self._pantographs = pantographs
-        self._at = {contact.connector: (-1, 0.0) for items in pantographs for contact in items.contacts}
-        self._elevation = [0.0] * len(pantographs)
-        self._tangent = [
-            p.pantograph.tangent(0.0) if isinstance(p.pantograph, ElasticPantograph) else None
-            for p in pantographs
-        ]
+    name: str
+    nodes: list[int]
+    elements: list[int]
+    x: Floats
 
-    def move_to(self, positions: Floats, speed: float) -> None:
-        """Put the pantographs at these positions [m] along the track, shape (pantographs,)."""
+
+@dataclass(frozen=True)
+class ContactParts:
+    """A collector strip on a contact wire.
+
+    wire : number of the contact wire
+    ahead : [m] along the track of the strip before the pantograph's position
+    strip : the strip in its substructure; of an attached pantograph, none
+    wire_marker, strip_marker : of the two points in contact
+    rolls : whether the strip's point follows the wire sideways
+    connector : object, the contact's spring and damper
+    """
+
+    wire: int
+    ahead: float
+    strip: Strip | None
+    wire_marker: int
+    strip_marker: int
+    rolls: bool
+    connector: int
+
+
+@dataclass(frozen=True)
+class PantographParts:
+    """A pantograph.
+
+    record : what was described, or of attached bodies what results record
+    substructure : what was assembled; of attached bodies, none
+    bodies : objects; those that carry strips first
+    joints : objects, springs and dampers between bodies, or a body and the base
+    coordinates : node, and which of its coordinates, of each of the substructure's coordinates
+    loads : with each one's share in the uplift force
+    strips : position markers on the middles of the collector strips
+    contacts : each strip on each contact wire
+    masses : position markers whose heights results record
+    """
+
+    record: AnyPantograph
+    substructure: Substructure | None
+    bodies: list[int]
+    joints: list[int]
+    coordinates: list[tuple[int, int]]
+    loads: list[tuple[int, float]]
+    strips: list[int]
+    contacts: list[ContactParts]
+    masses: list[int]
+
+    def index(self, mbs: exu.MainSystem) -> Integers:
+        """Shape (coordinates,): numbers of its coordinates among those of the assembled system."""
+        numbers = [mbs.systemData.GetNodeLTGODE2(node)[which] for node, which in self.coordinates]
+        return np.array(numbers, dtype=np.int64)
+
+
+def add_pantograph(
+    mbs: exu.MainSystem,
+    system: System,
+    wires: Sequence[WireParts],
+    ground: int,
+    pantograph: AnyPantograph,
+) -> PantographParts:
+    """Add a pantograph as it assembles. Its weight is balanced by its frame."""
+    assembled, axes = pantograph.assemble(spatial=system.spatial), system.axes
+    nominal = system.contact_wire_height * np.eye(3)[axes - 1]
+    bodies, coordinates, roll_places = [], [], []
+    for body in assembled.bodies:
+        number, node = _add_body(mbs, body, nominal, ground)
+        bodies.append(number)
+        coordinates.append((node, 0 if body.inertia is None else _HEAVE))
+        if body.inertia is not None:
+            roll_places.append((node, _ROLL))
+    coordinates += roll_places
+    on = [_coordinate_marker(mbs, place) for place in coordinates]
+    loads = [
+        (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=0.0))), float(share))
+        for marker, share in zip(on, assembled.load, strict=True)
+        if share
+    ]
+    middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
+    strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]
+    law = _Law(mbs, axes - 1, assembled.contact)
+    contacts = []
+    for strip, middle in zip(assembled.strips, strips, strict=True):
+        rolls = strip.body in assembled.rolling  # then it meets each wire at another place
+        for wire in range(len(wires)):
+            marker = _strip_marker(mbs, bodies, strip, nominal) if rolls else middle
+            contacts.append(law.connect(wires, wire, strip.ahead, marker, strip, rolls=rolls))
+    return PantographParts(
+        record=pantograph,
+        substructure=assembled,
+        bodies=bodies,
+        joints=_add_joints(mbs, assembled, on, ground),
+        coordinates=coordinates,
+        loads=loads,
+        strips=strips,
+        contacts=contacts,
+        masses=[int(marker) for marker in middles],
+    )
+
+
+def add_own_pantograph(
+    mbs: exu.MainSystem,
+    wires: Sequence[WireParts],
+    record: AttachedPantograph,
+    strips: Sequence[tuple[int, float]],
+    masses: Sequence[int],
+) -> PantographParts:
+    """Add the contacts of bodies that are there already.
+
+    strips : position markers on the collector strips, and distances [m] ahead
+    masses : position markers whose heights results record
+    """
+    up = 1 if "2D" in mbs.GetObject(wires[0].elements[0])["objectType"] else 2
+    law = _Law(mbs, up, ContactLaw(record.contact_stiffness, record.contact_damping))
+    contacts = [
+        law.connect(wires, wire, float(ahead), int(marker), None, rolls=False)
+        for marker, ahead in strips
+        for wire in range(len(wires))
+    ]
+    markers = [int(marker) for marker, _ in strips]
+    return PantographParts(record, None, [], [], [], [], markers, contacts, [int(m) for m in masses])
+
+
+def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, ground: int) -> tuple[int, int]:
+    """Numbers of a point mass that heaves, or of a rigid body that heaves and rolls, and of its node."""
+    if body.inertia is None:
+        node = mbs.AddNode(eii.Node1D(referenceCoordinates=[0.0]))
+        up = int(nominal.argmax())
+        point = eii.ObjectMass1D(
+            mass=body.mass, nodeNumber=node, referencePosition=list(nominal), referenceRotation=_TO_UP[up]
+        )
+        return int(mbs.AddObject(point)), int(node)
+    node = mbs.AddNode(eii.NodeRigidBodyRxyz(referenceCoordinates=[*nominal, 0, 0, 0]))
+    inertia = [body.inertia] * 3 + [0.0] * 3
+    rigid = mbs.AddObject(eii.ObjectRigidBody(nodeNumber=node, mass=body.mass, inertia=inertia))
+    for which in {*range(6)} - {_HEAVE, _ROLL}:
+        markers = [ground, _coordinate_marker(mbs, (int(node), which))]
+        mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
+    return int(rigid), int(node)
+
+
+def _coordinate_marker(mbs: exu.MainSystem, place: tuple[int, int]) -> int:
+    node, which = place
+    return int(mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=which)))
+
+
+def _strip_marker(mbs: exu.MainSystem, bodies: list[int], strip: Strip, nominal: Floats) -> int:
+    """On the strip's body, or where there is none at the nominal contact wire height."""
+    if strip.body is not None:
+        return int(mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[strip.body])))
+    node = mbs.AddNode(eii.NodePointGround(referenceCoordinates=list(nominal)))
+    return int(mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=node)))
+
+
+def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], ground: int) -> list[int]:
+    """Springs and dampers between heights, and of bodies that roll against the level, on their lever."""
+    found = []
+    for joint in assembled.joints:
+        lower = ground if joint.lower == BASE else on[joint.lower]
+        springs = [(on[joint.upper], lower, 1.0)]
+        if joint.upper in assembled.rolling:
+            roll = on[len(assembled.bodies) + assembled.rolling.index(joint.upper)]
+            springs.append((roll, ground, joint.lever**2))
+        for upper, end, factor in springs:
+            spring = eii.ObjectConnectorCoordinateSpringDamper(
+                markerNumbers=[upper, end],
+                stiffness=joint.stiffness * factor,
+                damping=joint.damping * factor,
+            )
+            found.append(int(mbs.AddObject(spring)))
+    return found
+
+
+class _Law:
+    """The law of a pantograph's contacts, one function for all of them."""
+
+    def __init__(self, mbs: exu.MainSystem, up: int, law: ContactLaw) -> None:
+        self._mbs, self._law, self._function = mbs, law, push_only(mbs, up, law)
+        self._upright = np.eye(3)[up]
+
+    def connect(
+        self,
+        wires: Sequence[WireParts],
+        wire: int,
+        ahead: float,
+        strip_marker: int,
+        strip: Strip | None,
+        *,
+        rolls: bool,
+    ) -> ContactParts:
+        """Add the contact of a strip with a wire, which stands at the wire's begin until it is moved."""
+        first = wires[wire].elements[0]
+        on_wire = self._mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=first))
+        connector = eii.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[on_wire, strip_marker],
+            stiffness=list(self._law.stiffness * self._upright),
+            damping=list(self._law.damping * self._upright),
+            springForceUserFunction=self._function,
+        )
+        number = int(self._mbs.AddObject(connector))
+        return ContactParts(wire, ahead, strip, int(on_wire), strip_marker, rolls, number)
+
+
+class Contacts:
+    """Moves each pantograph's contacts along the wires, and reads them."""
+
+    def __init__(
+        self,
+        mbs: exu.MainSystem,
+        system: System,
+        wires: Sequence[WireParts],
+        pantographs: Sequence[PantographParts],
+    ) -> None:
+        self._mbs, self._wires, self._pantographs = mbs, wires, pantographs
+        self._paths, self._up = system.contact_paths, system.axes - 1
+        self._element: dict[int, int] = {}  # of each connector, where it is known
+
+    def move_to(self, positions: Sequence[float] | Floats, speed: float) -> None:
+        """Put the pantographs at these positions [m] along the track, shape (pantographs,), at a speed [m/s].
+
+        What depends on the wire's line at the contact, its inclination and where it lies across the track,
+        is taken from the current state: that is a time step late.
+        """
         changed = False
-        for i, items in enumerate(self._pantographs):
-            for contact in items.contacts:
-                changed |= self._move(contact, float(positions[i]))
-                if isinstance(items.pantograph, ElasticPantograph):
-                    self._follow_law(i, items.pantograph)
-                elif items.pantograph.contact_damping:
-                    self._see_inclination(contact, items.pantograph.contact_damping, speed)
+        for parts, position in zip(self._pantographs, positions, strict=True):
+            for contact in parts.contacts:
+                changed |= self._move(contact, float(position) + contact.ahead, speed)
         if changed:
             self._mbs.AssembleLTGLists()
 
-    def _move(self, contact: ContactItems, position: float) -> bool:
+    def _move(self, contact: ContactParts, position: float, speed: float) -> bool:
         """True if the contact is on another element than before."""
-        before = self._at[contact.connector][0]
-        element, local = locate(contact.wire, position + contact.ahead)
-        self._at[contact.connector] = element, local
-        if element != before:
-            self._mbs.SetMarkerParameter(contact.wire_marker, "bodyNumber", contact.wire.elements[element])
-        self._mbs.SetMarkerParameter(contact.wire_marker, "localPosition", [local, 0, 0])
+        mbs, path = self._mbs, self._paths[contact.wire]
+        e, share = path.locate(position)
+        element, place = self._wires[contact.wire].elements[e], [share * float(path.lengths[e]), 0, 0]
+        changed = self._element.get(contact.connector) != element
+        if changed:
+            self._element[contact.connector] = element
+            mbs.SetMarkerParameter(contact.wire_marker, "bodyNumber", element)
+        mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
         if contact.rolls:
-            body, place = contact.wire.elements[element], exu.OutputVariableType.Position
-            sideways = float(self._mbs.GetObjectOutputBody(body, place, [local, 0, 0])[1])
-            self._mbs.SetMarkerParameter(contact.head_marker, "localPosition", [0, sideways, 0])
-        return element != before
-
-    def _see_inclination(self, contact: ContactItems, damping: float, speed: float) -> None:
-        values = damping * np.eye(3)[contact.wire.up]
-        values[0] = speed * self.inclination(contact)
-        self._mbs.SetObjectParameter(contact.connector, "damping", list(values))
-
-    def forces(self, items: PantographItems) -> Floats:
-        """[N], shape (contacts,), on a pantograph's wires at the current state."""
-        force = exu.OutputVariableType.Force
-        values = [self._mbs.GetObjectOutput(c.connector, force)[c.wire.up] for c in items.contacts]
-        return np.array(values, dtype=float)
-
-    def inclination(self, contact: ContactItems) -> float:
-        """dz/dx of the wire at a contact, at the current state."""
-        element, local = self._at[contact.connector]
-        slope = self._mbs.GetObjectOutputBody(
-            contact.wire.elements[element], exu.OutputVariableType.Director1, [local, 0, 0]
-        )
-        return float(slope[contact.wire.up] / slope[0])
-
-    def settle_laws(self, solve: Callable[[], None]) -> None:
-        """Bring static wire and the laws of elastic pantographs together.
-
-        solve : finds static equilibrium with the forces as they are set
-        """
-        laws = {
-            i: items.pantograph
-            for i, items in enumerate(self._pantographs)
-            if isinstance(items.pantograph, ElasticPantograph) and items.pantograph.law
-        }
-        for _ in range(_PIECES if laws else 0):
-            if not self._take_tangents(laws):
-                return
-            solve()
-        if laws:
-            # the straight pieces alternate; but the wire rises with the force, and the law falls
-            low, high = dict.fromkeys(laws, 0.0), {i: law.law[0][1] for i, law in laws.items()}
-            for _ in range(_HALVINGS):
-                middle = {i: (low[i] + high[i]) / 2 for i in laws}
-                for i, force in middle.items():
-                    self._set_law(i, (force, 0.0))
-                solve()
-                for i, law in laws.items():
-                    rising = law.contact_force(self._elevation_now(i)) > middle[i]
-                    (low if rising else high)[i] = middle[i]
-            self._take_tangents(laws)
-            solve()
-
-    def _take_tangents(self, laws: dict[int, ElasticPantograph]) -> bool:
-        """Take the straight piece of each law where the wire is now; true if one of them changed."""
-        changed = False
-        for i, law in laws.items():
-            self._elevation[i] = self._elevation_now(i)
-            changed |= self._set_law(i, law.tangent(self._elevation[i]))
+            lateral = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Position, place)[1]
+            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [0, float(lateral), 0])
+        damping = list(mbs.GetObjectParameter(contact.connector, "damping"))
+        if damping[self._up]:
+            slope = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Director1, place)
+            damping[0] = speed * float(slope[self._up] / slope[0])
+            mbs.SetObjectParameter(contact.connector, "damping", damping)
         return changed
 
-    def _follow_law(self, i: int, pantograph: ElasticPantograph) -> None:
-        """Take the straight piece of the law where the wire is expected at the step's end."""
-        before, now = self._elevation[i], self._elevation_now(i)
-        self._elevation[i] = now
-        self._set_law(i, pantograph.tangent(2 * now - before))
+    def force(self, contact: ContactParts) -> float:
+        """[N] upward on the wire at the current state."""
+        return float(self._mbs.GetObjectOutput(contact.connector, exu.OutputVariableType.Force)[self._up])
 
-    def _elevation_now(self, i: int) -> float:
-        (contact,) = self._pantographs[i].contacts
-        displacement = exu.OutputVariableType.Displacement
-        return -float(self._mbs.GetObjectOutput(contact.connector, displacement)[contact.wire.up])
+    def height(self, marker: int) -> float:
+        """[m] of a position marker at the current state."""
+        return float(self._mbs.GetMarkerOutput(marker, exu.OutputVariableType.Position)[self._up])
 
-    def _set_law(self, i: int, tangent: tuple[float, float]) -> bool:
-        """Let a connector push with F₀ − k · elevation; true if it did not before."""
-        if tangent == self._tangent[i]:
-            return False
-        self._tangent[i] = tangent
-        (contact,) = self._pantographs[i].contacts
-        stiffness = tangent[1] * np.eye(3)[contact.wire.up]
-        self._mbs.SetObjectParameter(contact.connector, "stiffness", list(stiffness))
-        self._mbs.SetObjectParameter(contact.connector, "damping", [tangent[0], 0, 0])
-        return True
-
-
-def locate(wire: WireItems, position: float) -> tuple[int, float]:
-    """Number of the wire's element at a position [m] along the track, and the arc length [m] inside it."""
-    x = wire.line.x
-    element = min(max(int(np.searchsorted(x, position, side="right")) - 1, 0), x.size - 2)
-    fraction = (position - x[element]) / (x[element + 1] - x[element])
-    return element, float(fraction * wire.line.lengths[element])
+    def lateral(self, contact: ContactParts) -> float:
+        """[m] to the left of the middle of a strip that rolls, where the contact is on it."""
+        if not contact.rolls:
+            return 0.0
+        return float(self._mbs.GetMarkerParameter(contact.strip_marker, "localPosition")[1])

@@ -1,288 +1,359 @@
-"""Drive pantographs along the wire, and write down what happens at every step."""
+"""Runs by Exudyn's solver: pantographs along the multibody model, and what is recorded at every step."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.exudyn.contact import MovingContact
-from catenary_fe.engines.exudyn.energy import EnergyBalance
-from catenary_fe.engines.exudyn.model import Model, build_model
-from catenary_fe.engines.exudyn.pantograph import PantographItems, add_pantographs
-from catenary_fe.engines.exudyn.solver import release, solve_dynamic, solve_static
+from catenary_fe.engines.base import Progress, RunCase
+from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
+from catenary_fe.engines.exudyn.solver import solve_dynamic, solve_static
 from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_steps
 from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.installation import Installation, dropper_damping
-from catenary_fe.fe.mesh import Mesh
-from catenary_fe.layout import AnyPantograph, Catenary, SolverError
+from catenary_fe.fe.contact import place
+from catenary_fe.layout import SolverError
+from catenary_fe.statics import Shape
+from catenary_fe.statics.contact import static_contact
 
 Floats = NDArray[np.float64]
-Progress = Callable[[float], None]
 STRETCH = 25  # steps that are divided from where one failed
 MOST_PARTS = 8
+_ALONG = exu.OutputVariableType.ForceLocal  # of a dropper
+_BOTH = exu.ConfigurationType.Initial, exu.ConfigurationType.Current
 
 _log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class Trip:
-    """How to drive.
+class ExudynEngine:
+    """A line for any number of runs by Exudyn's solver with one time step.
 
-    speed : [m/s]
-    start : [m], shape (pantographs,), positions at the start
-    steps : number of time steps
-    time : settings of the integration
-    wire_interval : [s] between stored shapes of the wires, or None
-    energy_interval : [s] between readings of the energy, or None
+    store_wire : [s] between stored shapes of the wires; unset: none
+    energy : whether energy, work and losses are recorded
+    model : to run, be it changed or not, with its own pantographs; unset: a new one for each run
     """
 
-    speed: float
-    start: Floats
-    steps: int
-    time: TimeSettings
-    wire_interval: float | None = None
-    energy_interval: float | None = None
+    def __init__(
+        self,
+        shape: Shape,
+        time: TimeSettings | None = None,
+        store_wire: float | None = None,
+        *,
+        energy: bool = False,
+        model: ExudynModel | None = None,
+    ) -> None:
+        self._shape, self._time, self._model = shape, time or TimeSettings(), model
+        self._every = round(store_wire / self._time.step) if store_wire else 0
+        self._energy_every = max(1, round(INTERVAL / self._time.step)) if energy else 0
+
+    def run(
+        self,
+        case: RunCase,
+        uplifts: Floats,
+        progress: Progress | None = None,
+        checkpoint: Checkpoint | None = None,
+    ) -> History:
+        """Run pantographs, each with its uplift [N], from static contact at constant speed.
+
+        checkpoint : must be unset
+
+        Raises SolverError without static contact, RunStopped with the history until then where a step fails
+        or the user interrupts.
+        """
+        assert checkpoint is None
+        model = self._model or exudyn_model(self._shape, case.pantographs)
+        try:
+            _start(model, case, uplifts, settle=self._model is not None)
+            recorder = _Recorder(model, case, uplifts, self._time, (self._every, self._energy_every))
+            try:
+                _integrate(model, case, recorder, self._time, progress)
+            except (SolverError, KeyboardInterrupt) as error:
+                raise RunStopped(recorder.history().until(recorder.done), error) from None
+            return recorder.history()
+        finally:
+            if self._model is None:
+                model.release()
 
 
-def drive(
-    catenary: Catenary,
-    mesh: Mesh,
-    installation: Installation,
-    pantographs: Sequence[tuple[AnyPantograph, float]],
-    trip: Trip,
-    progress: Progress | None = None,
-) -> History:
-    """Run pantographs, each with its uplift [N], from static contact at their starts at constant speed.
+def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) -> None:
+    """Bring the model to rest in static contact.
 
-    Raises SolverError where there is no static contact, RunStopped with the history until then where a step
-    fails or the user interrupts.
+    settle : also by Exudyn's static solver, for what was changed or attached
     """
-    model = build_model(catenary, mesh, installation)
-    items = add_pantographs(model, pantographs)
-    contact = MovingContact(model, items)
-    mbs = model.mbs
+    mbs, system = model.mbs, model.system
     mbs.Assemble()
-    contact.move_to(trip.start, 0.0)
-    raise_heads(model, items)
-    solve_static(mbs, what="static contact at the start")
-    contact.settle_laws(lambda: solve_static(mbs, what="static contact at the start"))
-    recorder = _Recorder(model, items, trip)
-    try:
-        _travel(model, contact, recorder, trip, progress)
-    except (SolverError, KeyboardInterrupt) as error:
-        raise RunStopped(recorder.history().until(recorder.done), error) from None
-    finally:
-        release(mbs)
-    return recorder.history()
+    own = [parts for parts in model.pantographs if parts.substructure]
+    known = len(own)  # attached ones come last
+    q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
+    if own:
+        records = case.pantographs[:known]
+        moved, placed = static_contact(
+            system, place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
+        )
+        q[: system.place.size] = moved
+        for parts, where in zip(own, placed, strict=True):
+            q[parts.index(mbs)] = where.heights
+    else:
+        q[: system.place.size] = 0.0
+    model.load_at(0.0)
+    model.lift(uplifts)
+    model.place(case.start)  # first: static contact has strips that roll where the wires were installed
+    _set_state(model, q, np.zeros_like(q))
+    if settle:
+        solve_static(mbs, what="static contact at the start", name=model.name)
 
 
-def _travel(
-    model: Model, contact: MovingContact, recorder: _Recorder, trip: Trip, progress: Progress | None
+def _set_state(model: ExudynModel, q: Floats, v: Floats) -> None:
+    """Make these coordinates and velocities the initial and the current ones."""
+    data = model.mbs.systemData
+    for configuration in _BOTH:
+        data.SetODE2Coordinates(q, configuration=configuration)
+        data.SetODE2Coordinates_t(v, configuration=configuration)
+
+
+def _integrate(
+    model: ExudynModel, case: RunCase, recorder: _Recorder, time: TimeSettings, progress: Progress | None
 ) -> None:
     """Step to the end; where a step fails, on from the state before it in smaller ones for a while.
 
     Raises SolverError where the smallest ones fail, too.
     """
-    what, parts = f"run at {3.6 * trip.speed:g} km/h", 1
-    while recorder.done < trip.steps:
+    contacts, parts, steps = model.contacts, 1, case.steps(time.step)
+    while recorder.done < steps:
         first = max(recorder.done, 0)
-        last = trip.steps if parts == 1 else min(first + STRETCH, trip.steps)
-        time = replace(trip.time, step=trip.time.step / parts)
+        last = steps if parts == 1 else min(first + STRETCH, steps)
+        finer = replace(time, step=time.step / parts)
 
-        def before_step(end: float, step: float = time.step, parts: int = parts) -> None:
+        def before_step(end: float, step: float = finer.step, parts: int = parts) -> None:
             count = round(end / step)
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
-            contact.move_to(trip.start + trip.speed * end, trip.speed)
+            model.load_at(end)
+            contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
-                progress(count / parts / trip.steps)
+                progress(count / parts / steps)
 
-        try:
-            solve_dynamic(
-                model.mbs,
-                steps=(last - first) * parts,
-                time=time,
-                what=what,
-                before_step=before_step,
-                begin=first * trip.time.step,
-            )
+        if solve_dynamic(model.mbs, (last - first) * parts, finer, before_step, first * time.step):
             recorder.record(last)
             parts = 1
-        except SolverError:
-            if parts == MOST_PARTS:
-                raise SolverError(recorder.failure(what)) from None
+        elif parts < MOST_PARTS:
             parts *= 2
             recorder.note_smaller_steps(parts)
-        if recorder.done < trip.steps:
-            recorder.take_up()
-            contact.move_to(trip.start + trip.speed * trip.time.step * recorder.done, trip.speed)
-
-
-def raise_heads(model: Model, items: Sequence[PantographItems]) -> None:
-    """Start the masses from contact: a pantograph with no base spring has no other equilibrium."""
-    mbs = model.mbs
-    coordinates = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
-    for item in items:
-        gaps = [mbs.GetObjectOutput(c.connector, exu.OutputVariableType.Displacement) for c in item.contacts]
-        gap = float(np.mean([values[c.wire.up] for values, c in zip(gaps, item.contacts, strict=True)]))
-        for node, coordinate in item.heights:
-            coordinates[mbs.systemData.GetNodeLTGODE2(node)[coordinate]] = 1e-3 - gap
-    for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
-        mbs.systemData.SetODE2Coordinates(coordinates, configuration=configuration)
+        else:
+            raise SolverError(recorder.failure())
+        if recorder.done < steps:
+            _set_state(model, *recorder.state)
+            contacts.move_to(case.start + case.speed * time.step * recorder.done, case.speed)
 
 
 class _Recorder:
-    """Reads the state at each step; what it keeps is small beside the state itself."""
+    """Reads the state at each step; what it keeps is small beside the state itself.
 
-    def __init__(self, model: Model, items: Sequence[PantographItems], trip: Trip) -> None:
-        self._model, self._items, self._trip = model, items, trip
-        n, catenary = trip.steps + 1, model.catenary
-        self._force = np.zeros((len(items), n))
-        self._wire_height = np.zeros((len(items), n))
-        self._masses = [np.zeros((len(item.heights), n)) for item in items]
-        self._mass_index = [
-            [model.mbs.systemData.GetNodeLTGODE2(node)[coordinate] for node, coordinate in item.heights]
-            for item in items
-        ]
-        self._dropper = np.zeros((len(catenary.droppers), n))
-        self._stiffness = np.array([d.stiffness for d in catenary.droppers])
-        self._damping = dropper_damping(catenary)
-        mesh, width = model.mesh, model.node_width
-        axes, up = np.arange(model.axes), model.axes - 1
-        self._lower = width * mesh.nodes(mesh.lower)[:, None] + axes
-        self._upper = width * mesh.nodes(mesh.upper)[:, None] + axes
-        reference = np.concatenate([wire.line.coordinates().ravel() for wire in model.wires])
-        self._span = reference[self._upper] - reference[self._lower]
-        supports = [
-            first + wire.supports
-            for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False)
-        ]
-        self._support_index = width * np.array(supports) + up
-        self._support = np.zeros((mesh.contact_wires, len(catenary.supports), n))
-        self._wire_index = width * np.arange(mesh.first_nodes[-1]) + up
-        self._every = round(trip.wire_interval / trip.time.step) if trip.wire_interval else 0
+    done : last step on record
+    state : coordinates and velocities then
+    """
+
+    def __init__(
+        self,
+        model: ExudynModel,
+        case: RunCase,
+        uplifts: Floats,
+        time: TimeSettings,
+        every: tuple[int, int],
+    ) -> None:
+        self._model, self._case, self._step, self._contacts = model, case, time.step, model.contacts
+        system, self._every = model.system, every[0]
+        steps = case.steps(time.step)
+        count, n = len(model.pantographs), steps + 1
+        self._times: Floats = np.arange(n, dtype=np.float64) * time.step
+        self._force, self._wire_height = np.zeros((count, n)), np.zeros((count, n))
+        self._masses = [np.zeros((len(parts.masses), n)) for parts in model.pantographs]
+        self._dropper = np.zeros((system.droppers.length.size, n))
+        paths = system.contact_paths
+        self._support_index = np.array([path.index[path.supports, 0] for path in paths])
+        self._support = np.zeros((*self._support_index.shape, n))
         self._wire: list[Floats] = []
-        self._energy_every = round(trip.energy_interval / trip.time.step) if trip.energy_interval else 0
-        self._energy_balance = (
-            EnergyBalance(model, items, trip.start, trip.steps, self._energy_every)
-            if trip.energy_interval
-            else None
-        )
-        self._tension = TensionRecord(TensionGauge(model.system))
-        self._tension_every = max(1, round(INTERVAL / trip.time.step))
-        self.done = -1  # last step on record
-        self._state = np.zeros(0), np.zeros(0)
+        self._balance = _EnergyBalance(model, uplifts, steps, every[1]) if every[1] else None
+        self._tension = TensionRecord(TensionGauge(system))
+        self._tension_every = max(1, round(INTERVAL / time.step))
         self._notes: dict[float, int] = {}
+        self.done = -1
+        self.state = np.zeros(0), np.zeros(0)
 
-    def take_up(self) -> None:
-        """Make the last state on record the initial one."""
-        for set_values, values in zip(
-            (self._model.mbs.systemData.SetODE2Coordinates, self._model.mbs.systemData.SetODE2Coordinates_t),
-            self._state,
-            strict=True,
-        ):
-            for configuration in (exu.ConfigurationType.Initial, exu.ConfigurationType.Current):
-                set_values(values, configuration=configuration)
+    def _positions(self, step: int) -> Floats:
+        positions: Floats = self._case.start + self._case.speed * self._step * step
+        return positions
+
+    def record(self, n: int) -> None:
+        """Take down the current state as step ``n``'s end."""
+        if n <= self.done:  # taken up again after smaller steps
+            return
+        model, contacts, system = self._model, self._contacts, self._model.system
+        data = model.mbs.systemData
+        q, v = self.state = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
+        nominal = system.contact_wire_height
+        forces = [[contacts.force(c) for c in parts.contacts] for parts in model.pantographs]
+        for i, parts in enumerate(model.pantographs):
+            self._force[i, n] = sum(forces[i])
+            heights = [contacts.height(contact.wire_marker) for contact in parts.contacts]
+            self._wire_height[i, n] = sum(heights) / len(heights) - nominal
+            self._masses[i][:, n] = [contacts.height(marker) - nominal for marker in parts.masses]
+        self._support[:, :, n] = q[self._support_index]
+        self._dropper[:, n] = [model.mbs.GetObjectOutput(d, _ALONG) for d in model.droppers]
+        if self._every and n % self._every == 0:
+            self._wire.append(q[system.heights])
+        if n % self._tension_every == 0:
+            self._tension.read(self._step * n, q)
+        if self._balance:
+            driving = self._balance.driving(self._step * n, q.size, self._positions(n), forces)
+            self._balance.record(n, q, v, driving, self._dropper[:, n])
+        self.done = n
 
     def note_smaller_steps(self, parts: int) -> None:
         """Remember for the result that steps were divided, and from when on."""
-        at = self._trip.time.step * self.done
+        at = self._step * self.done
         _log.warning("no convergence after t = %.4f s: on in steps of 1/%d", at, parts)
         self._notes[at] = parts
 
-    def failure(self, what: str) -> str:
+    def failure(self) -> str:
         """A failed run in words: when, where, what is strained, what to do."""
-        trip, catenary, n = self._trip, self._model.catenary, self.done
-        positions = trip.start + trip.speed * trip.time.step * n
+        n, catenary = self.done, self._model.shape.catenary
+        positions = self._positions(n)
         forces = ", ".join(f"{f:.0f} N" for f in self._force[:, n])
         strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
+        where = place_of_heads(catenary.support_positions, positions)
         return (
-            f"{what}: no convergence after t = {trip.time.step * n:.4f} s with steps of {trip.time.step:g} s"
-            f" and of 1/{MOST_PARTS} of it; {place_of_heads(catenary.support_positions, positions)}, contact"
-            f" force {forces};"
+            f"run at {3.6 * self._case.speed:g} km/h: no convergence after t = {self._step * n:.4f} s with"
+            f" steps of {self._step:g} s and of 1/{MOST_PARTS} of it; {where}, contact force {forces};"
             f" {strained + '; ' if strained else ''}look at the stiffness and uplift_force there, and try a"
             " smaller time step"
         )
 
-    def record(self, n: int) -> None:
-        if n <= self.done:  # taken up again after smaller steps
-            return
-        data = self._model.mbs.systemData
-        q, v = self._state = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
-        output, force = self._model.mbs.GetObjectOutput, exu.OutputVariableType.Force
-        for i, item in enumerate(self._items):
-            self._force[i, n] = sum(output(c.connector, force)[c.wire.up] for c in item.contacts)
-            self._wire_height[i, n] = self._height_over(item)
-            self._masses[i][:, n] = q[self._mass_index[i]]
-        self._support[:, :, n] = q[self._support_index]
-        self._dropper[:, n], drag, length = self._dropper_forces(q, v)
-        if self._every and n % self._every == 0:
-            self._wire.append(q[self._wire_index])
-        if n % self._tension_every == 0:
-            self._tension.read(self._trip.time.step * n, q)
-        if self._energy_balance:
-            self._energy_balance.record(n, self._trip.speed * self._trip.time.step * n, (drag, length))
-        self.done = n
-
-    def _height_over(self, item: PantographItems) -> float:
-        """[m] of the wire over a head, above its nominal height; the mean of its points of contact."""
-        position, output = exu.OutputVariableType.Position, self._model.mbs.GetMarkerOutput
-        heights = [output(c.wire_marker, position)[c.wire.up] for c in item.contacts]
-        return float(sum(heights) / len(heights) - self._model.contact_wire_height)
-
-    def _dropper_forces(self, q: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
-        """Tensions [N], the dampers' part of them, and lengths [m], each of shape (droppers,)."""
-        span = self._span + q[self._upper] - q[self._lower]
-        length = np.linalg.norm(span, axis=1)
-        stretch = length - self._model.dropper_lengths
-        rate = ((v[self._upper] - v[self._lower]) * span).sum(axis=1) / length
-        spring = np.maximum(self._stiffness * stretch, 0.0)
-        drag = np.clip(self._damping * rate, -spring, spring)
-        return spring + drag, drag, length
-
     def history(self) -> History:
-        trip, model = self._trip, self._model
-        time: Floats = np.arange(trip.steps + 1, dtype=np.float64) * trip.time.step
-        wires, ends = model.wires, model.mesh.first_nodes
-        stored = np.array(self._wire)
-        support_z = np.array(
-            [w.line.z[m.supports] for w, m in zip(model.contacts, model.mesh.wires, strict=False)]
-        )
+        """What was recorded so far."""
+        system, case, time, balance = self._model.system, self._case, self._times, self._balance
+        rest, stored = system.reference[system.heights], np.array(self._wire)
+        parts = [slice(wire.first, wire.first + wire.x.size) for wire in system.wires]
+        profiles = np.array([path.profile[path.supports, 0] for path in system.contact_paths])
+        nothing = np.array([])
         return History(
             time=time,
-            position=trip.start[:, None] + trip.speed * time,
+            position=case.start[:, None] + case.speed * time,
             contact_force=self._force,
             wire_height=self._wire_height,
             mass_heights=self._masses,
             dropper_force=self._dropper,
-            support_height=support_z[:, :, None] + self._support,
-            wire_x=[wire.line.x for wire in wires],
-            wire_z=[w.line.z + stored[:, a:b] for w, a, b in zip(wires, ends[:-1], ends[1:], strict=True)]
-            if self._wire
-            else [],
+            support_height=profiles[:, :, None] + self._support,
+            wire_x=[wire.x for wire in system.wires],
+            wire_z=[rest[part] + stored[:, part] for part in parts] if self._wire else [],
             wire_times=time[:: self._every] if self._wire else None,
-            energy=self._energy_balance.energy if self._energy_balance else np.array([]),
-            energy_times=time[:: self._energy_every] if self._energy_balance else np.array([]),
-            driven_work=self._energy_balance.work if self._energy_balance else np.array([]),
-            lost_work=self._energy_balance.loss if self._energy_balance else None,
+            energy=balance.energy if balance else nothing,
+            energy_times=time[:: balance.every] if balance else nothing,
+            driven_work=balance.work if balance else nothing,
+            lost_work=balance.loss if balance else None,
             tension_change=self._tension.changes,
             tension_span=self._tension.spans,
             tension_times=self._tension.times,
-            notes=tuple(
-                smaller_steps(
-                    model.catenary.support_positions,
-                    trip.start + trip.speed * at,
-                    at,
-                    parts,
-                    1e3 * STRETCH * trip.time.step,
-                )
-                for at, parts in self._notes.items()
-            ),
+            notes=tuple(self._note(at, parts) for at, parts in self._notes.items()),
         )
+
+    def _note(self, at: float, parts: int) -> str:
+        supports, positions = self._model.system.support_positions, self._case.start + self._case.speed * at
+        return smaller_steps(supports, positions, at, parts, 1e3 * STRETCH * self._step)
+
+
+class _EnergyBalance:
+    """Energy, work of contacts and loads in time, and loss in the dampers, step by step.
+
+    Kinetic and stored energy are those of line and pantographs; the potential of constant forces (weight,
+    tensions, preloads, uplift) counts as stored. Work and loss of a step are those of the trapezoidal rule:
+    the mean of a force at the step's two ends along the displacement between them. A contact's work on wire
+    and head is not zero: what it does not store or damp comes from the moving base, which drives the force
+    over the wire's inclination.
+
+    every : steps between readings of the energy
+    """
+
+    def __init__(self, model: ExudynModel, uplifts: Floats, steps: int, every: int) -> None:
+        self.every, self._model, self._contacts = every, model, model.contacts
+        self._damping, self._droppers = model.system.damping(), model.system.droppers
+        self._line = model.system.place.size
+        self._bodies = [
+            (parts, parts.substructure, parts.index(model.mbs), float(uplift))
+            for parts, uplift in zip(model.pantographs, uplifts, strict=True)
+            if parts.substructure
+        ]
+        self.work, self.loss = np.zeros(steps + 1), np.zeros(steps + 1)
+        self._energy: list[float] = []
+        self._before: tuple[Floats, ...] | None = None
+
+    @property
+    def energy(self) -> Floats:
+        """[J], shape (readings,)."""
+        return np.array(self._energy)
+
+    def record(
+        self,
+        n: int,
+        q: Floats,
+        v: Floats,
+        driving: Floats,
+        droppers: Floats,
+    ) -> None:
+        """Take down step ``n``'s end.
+
+        driving : [N], shape (coordinates,), forces whose work is counted
+        droppers : [N], shape (droppers,), tensions
+        """
+        span = self._droppers.span(self._model.system.reference + q[: self._line])
+        drag, length = droppers - self._droppers.tension(span), np.linalg.norm(span, axis=1)
+        now = (q, driving, self._drag(v), drag, length)
+        if self._before is not None:
+            before = self._before
+            moved = q - before[0]
+            self.work[n] = self.work[n - 1] + (before[1] + now[1]) @ moved / 2
+            lost = (before[2] + now[2]) @ moved + (before[3] + now[3]) @ (now[4] - before[4])
+            self.loss[n] = self.loss[n - 1] + lost / 2
+        self._before = now
+        if n % self.every == 0:
+            self._energy.append(self._energy_of(q, v))
+
+    def driving(self, time: float, size: int, positions: Floats, forces: list[list[float]]) -> Floats:
+        """[N], shape (coordinates,): generalised forces of the contacts, and loads that vary in time [s].
+
+        positions : [m] of the pantographs
+        forces : [N] of each pantograph's contacts
+        """
+        found, paths = np.zeros(size), self._model.system.contact_paths
+        found[: self._line] = self._model.system.varying(time)
+        for i, (parts, body, index, _) in enumerate(self._bodies):
+            for contact, force in zip(parts.contacts, forces[i], strict=True):
+                path = paths[contact.wire]
+                e, weights = path.at(float(positions[i]) + contact.ahead)
+                found[path.index[e : e + 2].ravel()] += force * weights
+                if contact.strip:
+                    found[index] -= force * body.row(contact.strip, self._contacts.lateral(contact))
+        return found
+
+    def _drag(self, v: Floats) -> Floats:
+        """[N], shape (coordinates,), of all linear dampers: of droppers' and contacts', none."""
+        drag = np.zeros(v.size)
+        drag[: self._line] = self._damping @ v[: self._line]
+        for _, body, index, _ in self._bodies:
+            drag[index] = body.damping @ v[index]
+        return drag
+
+    def _energy_of(self, q: Floats, v: Floats) -> float:
+        """[J] above an arbitrary zero."""
+        system, moving = self._model.system, v[: self._line]
+        total = system.energy(q[: self._line]) + float(moving @ (system.mass @ moving) / 2)
+        for _, body, index, uplift in self._bodies:
+            y, w = q[index], v[index]
+            total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - uplift * body.load @ y)
+        return total

@@ -11,7 +11,6 @@ from typing import Any, Self
 import exudyn as exu
 import numpy as np
 
-from catenary_fe.engines.faults import place_of_fault
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import SolverError
 
@@ -35,22 +34,25 @@ def release(system: exu.MainSystem) -> None:
     system.variables.pop("container").Reset()
 
 
-def solve_static(mbs: exu.MainSystem, *, what: str) -> None:
+def solve_static(
+    mbs: exu.MainSystem, *, what: str, name: Callable[[int], str] = "coordinate {}".format
+) -> None:
     """Solve for static equilibrium and make the result the initial state.
 
     In one load step; where that fails, in many, stabilised, and from there in one again.
 
     what : the case in words, for the error's text
+    name : of a coordinate in words, likewise
 
     Raises SolverError, with the place where the solve ran away, if the Newton iteration does not converge.
     """
     start = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if not (_settled(mbs) or (_settled(mbs, LOAD_STEPS) and _settled(mbs))):
-        place = place_of_fault(mbs, start)
+        moved = np.nan_to_num(np.abs(mbs.systemData.GetODE2Coordinates() - start), nan=np.inf)
         raise SolverError(
-            f"{what}: no static equilibrium found, neither at once nor in {LOAD_STEPS} steps of the load;"
-            f" {place + '; ' if place else ''}look there for tensions, lengths, stiffnesses or forces that"
-            " are far from usual values, or refine the mesh"
+            f"{what}: no static equilibrium found, neither at once nor in {LOAD_STEPS} steps of the load; the"
+            f" solve ran away at the {name(int(moved.argmax()))}; look there for tensions, lengths,"
+            " stiffnesses or forces that are far from usual values, or refine the mesh"
         )
 
 
@@ -85,34 +87,30 @@ def _settled(mbs: exu.MainSystem, load_steps: int = 1) -> bool:
 
 def solve_dynamic(
     mbs: exu.MainSystem,
-    *,
     steps: int,
     time: TimeSettings,
-    what: str,
-    before_step: Callable[[float], None] | None = None,
+    before_step: Callable[[float], None],
     begin: float = 0.0,
-) -> None:
-    """Integrate from the initial state over a number of fixed steps.
+) -> bool:
+    """Integrate from the initial state over a number of fixed steps; false if one does not converge.
 
-    begin : [s]
     before_step : called with the time of each step's end before the step
+    begin : [s]
 
-    Raises SolverError with the time reached if a step does not converge, and what ``before_step`` raises.
+    Raises what ``before_step`` raises.
     """
     raised: list[BaseException] = []
     computing = _Computing()
 
     def called(_: exu.MainSystem, end: float) -> bool:
         try:
-            assert before_step is not None
             computing.deliver()
             before_step(end)
         except BaseException as error:  # Exudyn would make an error of its own of it, of Ctrl-C, too
             raised.append(error)
         return not raised
 
-    if before_step is not None:
-        mbs.SetPreStepUserFunction(called)
+    mbs.SetPreStepUserFunction(called)
     settings = _common_settings()
     integration = settings.timeIntegration
     integration.numberOfSteps = steps
@@ -125,17 +123,17 @@ def solve_dynamic(
     integration.newton.relativeTolerance = time.tolerance
     integration.newton.absoluteTolerance = 1e-8
     integration.generalizedAlpha.spectralRadius = time.spectral_radius
+    converged = True
     try:
         with computing:
             mbs.SolveDynamic(settings)
     except exu.SolverError:
-        reached = mbs.systemData.GetTime()
-        raise SolverError(
-            f"{what}: no convergence at t = {reached:.4f} s with steps of {time.step:g} s; try a smaller time"
-            " step, and look at the contact and dropper stiffnesses"
-        ) from None
+        converged = False
+    finally:
+        mbs.SetPreStepUserFunction(0)  # none: the static solver would call it, too
     if raised:
         raise raised[0]
+    return converged
 
 
 def _force_floor(mbs: exu.MainSystem) -> float:

@@ -11,18 +11,15 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.exudyn.model import Model, build_model
-from catenary_fe.fe.installation import Installation
-from catenary_fe.fe.mesh import Mesh
-from catenary_fe.layout import Catenary, InputError
+from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
+from catenary_fe.layout import InputError
+from catenary_fe.statics import Shape
 
 _SIZE = 1280, 640  # [pixels]
 _CONTACT, _MESSENGER = [0.77, 0.31, 0.11, 1.0], [0.12, 0.35, 0.52, 1.0]
 
 
-def view_model(
-    catenary: Catenary, mesh: Mesh, installation: Installation, spans: tuple[int, int], *, wait: bool = True
-) -> NDArray[np.uint8]:
+def view_model(shape: Shape, spans: tuple[int, int], *, wait: bool = True) -> NDArray[np.uint8]:
     """Show the model at rest until the viewer is closed; returns what it showed first, shape (y, x, 3).
 
     spans : first and last one in view, from 1
@@ -31,9 +28,8 @@ def view_model(
     Raises InputError where there is no screen.
     """
     require_screen()
-    model = build_model(catenary, mesh, installation)
+    model, catenary = exudyn_model(shape), shape.catenary
     _dress(model)
-    model.mbs.Assemble()
     container = model.mbs.variables["container"]
     settings = container.visualizationSettings
     settings.window.renderWindowSize = list(_SIZE)
@@ -57,7 +53,7 @@ def view_model(
         left, right = catenary.support_positions[[spans[0] - 1, spans[1]]]
         middle = catenary.contact_wire_height + catenary.system_height / 2
         height = 0.53 * (right - left) * _SIZE[1] / _SIZE[0]  # above and below the middle
-        turned = [0.0, 0.0, 0.0] if model.axes == 2 else [-np.pi / 2, 0.0, 0.0]  # its y points up
+        turned = [0.0, 0.0, 0.0] if not model.system.spatial else [-np.pi / 2, 0.0, 0.0]  # its y points up
         centre = [(left + right) / 2, middle, 0.0]  # as seen, after the turn
         container.renderer.SetModelView(zoom=height, rotationVector=turned, centerPoint=centre)
         picture: NDArray[np.uint8] = np.asarray(container.renderer.RedrawAndGetImage(), dtype=np.uint8)
@@ -68,16 +64,15 @@ def view_model(
     return picture
 
 
-def _dress(model: Model) -> None:
+def _dress(model: ExudynModel) -> None:
     """Wires in their colours; the springs to the ground, which stands at the origin, are not shown."""
     mbs = model.mbs
     for number, wire in enumerate(model.wires):
-        colour = _CONTACT if number < len(model.contacts) else _MESSENGER
+        colour = _CONTACT if number < len(model.contact_wires) else _MESSENGER
         for element in wire.elements:
             mbs.SetObjectParameter(element, "Vcolor", colour)
-    for number in range(mbs.systemData.NumberOfObjects()):
-        if "ConnectorCoordinate" in mbs.GetObject(number)["objectType"]:
-            mbs.SetObjectParameter(number, "Vshow", False)
+    for number in (*model.supports.values(), *model.holds.values(), *model.clamps.values()):
+        mbs.SetObjectParameter(number, "Vshow", False)
 
 
 def require_screen() -> None:
