@@ -86,9 +86,14 @@ class BaseLine:
     x: Floats
     z: Floats
 
-    def under(self, placed: PlacedPantograph) -> float:
-        """[m] that the base of a pantograph has risen where it is; 0 where it follows the rail."""
-        return float(np.interp(placed.position, self.x, self.z)) if placed.body.follows else 0.0
+    @property
+    def varies(self) -> bool:
+        """Whether it ever leaves the nominal height."""
+        return bool(self.z.any())
+
+    def under(self, body: Substructure, position: float) -> float:
+        """[m] that the base of a pantograph has risen at a place [m]; 0 where it follows the rail."""
+        return float(np.interp(position, self.x, self.z)) if body.follows else 0.0
 
 
 def place(

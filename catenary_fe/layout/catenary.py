@@ -236,7 +236,8 @@ class Catenary(Parameters):
     def messenger_support_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
         heights = [s.system_height or self.system_height for s in self.supports]
-        return self.contact_wire_heights + np.array(heights)
+        above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
+        return above
 
     @property
     def leaves_the_plane(self) -> bool:

@@ -316,6 +316,11 @@ class AttachedPantograph(Parameters):
     """[N s/m] beside the contact stiffness, never pulling"""
 
     @property
+    def base(self) -> Base:
+        """Its script moves it, or not."""
+        return "rail"
+
+    @property
     def stages(self) -> tuple[Stage, ...]:
         """None that are known."""
         return ()

@@ -55,7 +55,7 @@ class _StaticContact:
         bodies = [p.body for p in pantographs]
         self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])
         self.K = csr_matrix(block_diag(np.zeros((0, 0)), *(body.stiffness for body in bodies)))
-        risen = [system.base_line.under(p) for p in pantographs]
+        risen = [system.base_line.under(p.body, p.position) for p in pantographs]
         loads = [
             p.uplift * p.body.load + z * p.body.base_load for p, z in zip(pantographs, risen, strict=True)
         ]

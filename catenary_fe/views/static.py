@@ -55,11 +55,7 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
     design = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
     ax.plot(x, design, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
-    label = (
-        "height above the line between supports (mm)"
-        if catenary.changes_height
-        else "height above nominal (mm)"
-    )
+    above = "the line between supports" if catenary.changes_height else "nominal"
     style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
     if detail:
@@ -68,7 +64,7 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
         texts = [f"{force:.0f} N" for force in shape.dropper_forces[chosen]]
         if style.label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
-    return _finished(ax, part, label, what)
+    return _finished(ax, part, f"height above {above} (mm)", what)
 
 
 def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:

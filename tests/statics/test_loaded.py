@@ -47,9 +47,7 @@ def test_lifts_that_do_not_settle_are_solved_for_one_by_one(monkeypatch, short_s
 
 
 def test_a_force_far_beyond_the_wires_is_an_error_with_its_place(short_shape):
-    with pytest.raises(
-        cf.SolverError, match=r"static load .* wire at \d+\.\d m, .*; try a smaller"
-    ):
+    with pytest.raises(cf.SolverError, match=r"static load .* wire at \d+\.\d m, .*; try a smaller"):
         cf.solve_statics(short_shape, [(100.0, 1e9)])
 
 
