@@ -303,7 +303,7 @@ def _gradients(figures: KeyFigures) -> list[Criterion]:
     assert limit.value is not None
     return [
         Criterion(
-            name=name, value=1e3 * value, limit=1e3 * share * limit.value, unit="‰",
+            name=name, value=round(1e3 * value, 9), limit=1e3 * share * limit.value, unit="‰",
             source=limit.source, recalled=limit.recalled,
         )
         for name, value, share in (
