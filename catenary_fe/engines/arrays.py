@@ -51,6 +51,8 @@ class PantographParameters(NamedTuple):
 
     K, D, inverse : shape (slots, pantographs, coordinates, coordinates), inverse of M + g D + b K
     load : shape (slots, pantographs, coordinates)
+    base_load : [N/m], likewise, for each metre that the base has risen
+    follows, place : shape (slots, pantographs), 1 where the base follows the design height; [m] at the start
     owner, wire : shape (slots, contacts), pantograph (-1: none) and contact wire of each contact
     start : [m], shape (slots, contacts)
     heave, roll : shape (slots, contacts, coordinates), height of the strip at the contact: as it heaves, and
@@ -59,15 +61,19 @@ class PantographParameters(NamedTuple):
     preload : [N], shape (slots, contacts), force on a wire at the height of its strip
     points : shape (slots, contacts), number of points of the contact's law; 0: it is straight
     law : [m] and [N], shape (slots, contacts, points, 2), of wires above the strip and forces
-    speed : [m/s], shape (slots, contacts)
+    speed, pace : [m/s], shape (slots, contacts), and (slots,) of the pantographs
     last : shape (slots,), number of the run's last step
     nominal : [m], height that coordinates count from
+    base_x, base_z : [m], shape (points,), the line that bases follow
     """
 
     K: Floats
     D: Floats
     inverse: Floats
     load: Floats
+    base_load: Floats
+    follows: Floats
+    place: Floats
     owner: Integers
     wire: Integers
     start: Floats
@@ -79,8 +85,11 @@ class PantographParameters(NamedTuple):
     points: Integers
     law: Floats
     speed: Floats
+    pace: Floats
     last: Integers
     nominal: float
+    base_x: Floats
+    base_z: Floats
 
 
 class PantographState(NamedTuple):
@@ -135,6 +144,7 @@ class Work(NamedTuple):
     shape, rise : shape (slots, contacts, 5), weights of height and inclination; last, at rest
     at : shape (slots, contacts, 4), coordinates that they weigh
     on : shape (slots, contacts), 1 where a strip is between the ends of its wire
+    base : [m], shape (slots, contacts), height of strips that no body carries
     head, head_compliance : shape (slots, contacts, coordinates), height of the head there, how it yields
     """
 
@@ -151,5 +161,6 @@ class Work(NamedTuple):
     rise: Floats
     at: Integers
     on: Integers
+    base: Floats
     head: Floats
     head_compliance: Floats

@@ -117,6 +117,15 @@ def place_head(heads: PantographParameters, work: Work, c: int, j: int, lateral:
 
 
 @compiled
+def place_base(heads: PantographParameters, work: Work, c: int, j: int, time: float) -> None:
+    """Height of a strip that no body carries, at a time [s]; of others it is in their coordinates."""
+    carried = False
+    for s in range(heads.heave.shape[2]):
+        carried = carried or heads.heave[c, j, s] != 0.0
+    work.base[c, j] = 0.0 if carried else base_height(heads, c, heads.owner[c, j], time)
+
+
+@compiled
 def update_contact(
     scheme: Scheme,
     wires: Wires,
@@ -143,7 +152,7 @@ def update_contact(
             wire_compliance += shape[m] * column[i - first]
             turn += rise[m] * column[i - first]
     climb += heads.speed[c, j] * slope
-    head, rate, light = 0.0, 0.0, 0.0
+    head, rate, light = work.base[c, j], 0.0, 0.0
     for s in range(pantographs.x.shape[2]):
         row = work.head[c, j, s]
         head += row * (pantographs.q[c, p, s] + scheme.b * pantographs.x[c, p, s])
@@ -168,14 +177,27 @@ def update_contact(
 
 
 @compiled
-def free_heads(heads: PantographParameters, pantographs: PantographState, c: int) -> None:
-    """Accelerations of the masses without contact."""
+def base_height(heads: PantographParameters, c: int, p: int, time: float) -> float:
+    """[m] that a pantograph's base has risen at a time [s]."""
+    x, z = heads.base_x, heads.base_z
+    if heads.follows[c, p] == 0.0 or x.size < 2:
+        return 0.0
+    position, e = heads.place[c, p] + heads.pace[c] * time, 0
+    while e < x.size - 2 and x[e + 1] <= position:
+        e += 1
+    return float(z[e] + (z[e + 1] - z[e]) * (position - x[e]) / (x[e + 1] - x[e]))
+
+
+@compiled
+def free_heads(heads: PantographParameters, pantographs: PantographState, c: int, time: float) -> None:
+    """Accelerations of the masses without contact, at a time [s]."""
     count, size = pantographs.x.shape[1], pantographs.x.shape[2]
     for p in range(count):
+        risen = base_height(heads, c, p, time)
         for r in range(size):
             pantographs.x[c, p, r] = 0.0
         for s in range(size):
-            load = heads.load[c, p, s]
+            load = heads.load[c, p, s] + risen * heads.base_load[c, p, s]
             for r in range(size):
                 load -= (
                     heads.K[c, p, s, r] * pantographs.q[c, p, r]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.history import History
-from catenary_fe.fe.contact import Contact, PlacedPantograph, contacts_of
+from catenary_fe.fe.contact import BaseLine, Contact, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
@@ -78,7 +78,7 @@ class InitialState:
 
 
 def make_pantographs(
-    slots: int, sizes: Sizes, nominal: float
+    slots: int, sizes: Sizes, nominal: float, base: BaseLine
 ) -> tuple[PantographParameters, PantographState]:
     """Room for pantographs."""
     each, own = (slots, sizes.contacts), (slots, sizes.pantographs, sizes.coordinates)
@@ -88,6 +88,9 @@ def make_pantographs(
         D=np.zeros(square),
         inverse=np.zeros(square),
         load=np.zeros(own),
+        base_load=np.zeros(own),
+        follows=np.zeros(own[:2]),
+        place=np.zeros(own[:2]),
         owner=np.full(each, -1),
         wire=np.zeros(each, dtype=np.int64),
         start=np.zeros(each),
@@ -99,8 +102,11 @@ def make_pantographs(
         points=np.zeros(each, dtype=np.int64),
         law=np.zeros((*each, sizes.points, 2)),
         speed=np.zeros(each),
+        pace=np.zeros(slots),
         last=np.zeros(slots, dtype=np.int64),
         nominal=nominal,
+        base_x=base.x,
+        base_z=base.z,
     )
     state = PantographState(
         q=np.zeros(own),
@@ -146,7 +152,16 @@ def load_pantographs(
     steps: int,
 ) -> None:
     """Put the pantographs of a run at its start into a slot."""
-    for array in (*state[:4], heads.K, heads.D, heads.inverse, heads.load, heads.heave, heads.roll):
+    for array in (
+        *state[:4],
+        heads.K,
+        heads.D,
+        heads.inverse,
+        heads.load,
+        heads.base_load,
+        heads.heave,
+        heads.roll,
+    ):
         array[slot] = 0.0
     heads.owner[slot] = -1
     for p, placed in enumerate(start.pantographs):
@@ -156,6 +171,8 @@ def load_pantographs(
         matrix = body.mass + scheme.g * body.damping + scheme.b * body.stiffness
         heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
         heads.load[slot, p, :m] = placed.uplift * body.load
+        heads.base_load[slot, p, :m] = body.base_load
+        heads.follows[slot, p], heads.place[slot, p] = body.follows, placed.position
         records.masses[slot, p, :m, 0] = placed.heights
     for j, contact in enumerate(start.contacts):
         body = start.pantographs[contact.pantograph].body
@@ -171,6 +188,7 @@ def load_pantographs(
     count = len(start.contacts)
     records.force[slot, :count, 0] = start.contact_forces
     records.height[slot, :count, 0] = start.wire_heights
+    heads.pace[slot] = start.speed
     heads.speed[slot, :], state.step[slot], heads.last[slot] = start.speed, 0, steps
     records.droppers[slot, :, 0] = start.dropper_force
     for found in (records.change, records.changed, records.shortening, records.shortened):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import Cables, mass_blocks, scattered
+from catenary_fe.fe.contact import BaseLine
 from catenary_fe.fe.installation import (
     Installation,
     WireLine,
@@ -76,6 +77,9 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
         beta=float(catenary.damping.beta),
         wires=_wires(catenary, mesh),
         contact_wire_height=catenary.contact_wire_height,
+        base_line=BaseLine(
+            catenary.support_positions, catenary.contact_wire_heights - catenary.contact_wire_height
+        ),
     )
 
 

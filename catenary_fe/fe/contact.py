@@ -75,6 +75,27 @@ class Contact:
     position: float
 
 
+@dataclass(frozen=True)
+class BaseLine:
+    """What a pantograph's base follows: the contact wire's design line, straight between its points.
+
+    x : [m], shape (points,), along the track
+    z : [m], shape (points,), above the nominal contact wire height
+    """
+
+    x: Floats
+    z: Floats
+
+    @property
+    def varies(self) -> bool:
+        """Whether it ever leaves the nominal height."""
+        return bool(self.z.any())
+
+    def under(self, body: Substructure, position: float) -> float:
+        """[m] that the base of a pantograph has risen at a place [m]; 0 where it follows the rail."""
+        return float(np.interp(position, self.x, self.z)) if body.follows else 0.0
+
+
 def place(
     pantographs: Sequence[AnyPantograph], uplifts: Floats, positions: Floats, *, spatial: bool
 ) -> list[PlacedPantograph]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import Cables, mass_blocks, scattered
+from catenary_fe.fe.contact import BaseLine
 from catenary_fe.fe.installation import WireLine
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
@@ -147,6 +148,7 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
         beta=0.0,
         wires=tuple(_nodes(part, number, pair) for number, part in enumerate(parts)),
         contact_wire_height=0.0,
+        base_line=BaseLine(np.zeros(1), np.zeros(1)),
     )
 
 

@@ -26,7 +26,7 @@ from catenary_fe.fe.cable import (
     strain_energy,
     tangent_blocks,
 )
-from catenary_fe.fe.contact import ContactPath
+from catenary_fe.fe.contact import BaseLine, ContactPath
 from catenary_fe.fe.spring import FIXED, Springs
 
 Floats = NDArray[np.float64]
@@ -85,6 +85,7 @@ class System:
     alpha, beta : Rayleigh damping of the wires
     wires : contact wires, messenger wire, stitch wires
     contact_wire_height : [m], nominal, from which pantographs count
+    base_line : what the bases of pantographs follow
     time_loads : besides the constant forces
     """
 
@@ -108,6 +109,7 @@ class System:
     beta: float
     wires: tuple[WireNodes, ...]
     contact_wire_height: float
+    base_line: BaseLine
     time_loads: tuple[TimeLoad, ...] = ()
 
     @property

@@ -8,7 +8,7 @@ from math import tan
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
@@ -200,15 +200,42 @@ class Catenary(Parameters):
         return self.replace(spans=spans)
 
     @_fixed_array
+    def contact_wire_heights(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): design height of the contact wire at the supports."""
+        return np.array([s.contact_wire_height or self.contact_wire_height for s in self.supports])
+
+    @property
+    def changes_height(self) -> bool:
+        """Whether the contact wire's design height is another one at some supports."""
+        return bool(
+            np.ptp(self.contact_wire_heights) or self.contact_wire_heights[0] != self.contact_wire_height
+        )
+
+    def design_line(self, x: ArrayLike) -> NDArray[np.float64]:
+        """[m] above the rail, at places x [m] along the line: straight between the supports' heights."""
+        at = np.asarray(x, dtype=float)
+        line: NDArray[np.float64] = np.interp(at, self.support_positions, self.contact_wire_heights)
+        return line
+
+    @_fixed_array
+    def gradients(self) -> NDArray[np.float64]:
+        """Shape (spans,): design gradient of the contact wire in each span."""
+        gradients: NDArray[np.float64] = np.diff(self.contact_wire_heights) / np.diff(self.support_positions)
+        return gradients
+
+    @_fixed_array
     def design_heights(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
-        return self.contact_wire_height + np.concatenate([s.height_offsets() for s in self.spans])
+        offsets = np.concatenate([s.height_offsets() for s in self.spans])
+        heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets
+        return heights
 
     @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
         heights = [s.system_height or self.system_height for s in self.supports]
-        return self.contact_wire_height + np.array(heights)
+        above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
+        return above
 
     @property
     def leaves_the_plane(self) -> bool:

@@ -16,6 +16,8 @@ Bound = Literal["minimum", "maximum"]
 
 DEVIATION_SHARE = 0.3  # standard deviation over mean force, at most (secondary source)
 WAVE_SPEED_SHARE = 0.7  # of the contact wire's wave speed, EN 50119 practice (secondary source)
+# speed up to [km/h], and the largest gradient there (EN 50119, recalled)
+_GRADIENTS = ((50, 25e-3), (60, 20e-3), (100, 6e-3), (120, 4e-3), (160, 3.3e-3), (200, 2e-3), (250, 1e-3))
 UPLIFT_FACTOR = 2.0  # times the computed uplift must have room at a steady arm (recalled)
 MEAN_FORCE_TOLERANCE = 0.1  # [N] within which a run's uplift is set for a mean force
 
@@ -60,6 +62,12 @@ _MEAN_FORCE: dict[tuple[PowerSystem, Bound], tuple[_Parabola, ...]] = {
 
 def _kmh(speed: float) -> float:
     return round(3.6 * speed, 9)  # 200 km/h given in m/s is not above 200 km/h
+
+
+def gradient_limit(speed: float) -> Limit:
+    """Largest gradient of the contact wire at a speed in m/s; it may change by half of that at a support."""
+    largest = next((gradient for fastest, gradient in _GRADIENTS if _kmh(speed) <= fastest), 0.0)
+    return Limit(largest, "EN 50119 (recalled)")
 
 
 def mean_force_limit(system: PowerSystem, bound: Bound, speed: float) -> Limit:

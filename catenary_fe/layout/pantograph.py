@@ -22,6 +22,8 @@ from catenary_fe.layout.parameters import (
 )
 from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Joint, Strip, Substructure
 
+Base = Literal["contact wire", "rail"]
+
 
 class Stage(Parameters):
     """A mass with the spring and damper below it, which join it to the next stage or to the base."""
@@ -100,6 +102,9 @@ class Pantograph(Parameters):
     """[N/m] between head and contact wire, no tension"""
     contact_damping: NonNegative = 0.0
     """[N s/m] beside the contact stiffness, never pulling"""
+    base: Base = "contact wire"
+    """what the base's height follows: the design height of the contact wire, as an articulated frame keeps
+    its force over its working range, or the rail, as if its spring did"""
     head: Panhead | None = None
     """what the head is beyond the first mass; unset: a level head of the usual width with one strip"""
 
@@ -156,6 +161,7 @@ class Pantograph(Parameters):
             lifted=(1 / count,) * count if single else (0.0,) * (len(below) + count - 2) + (1.0,),
             strips=tuple(Strip(apart * (0.5 - i) if count > 1 else 0.0, i) for i in range(count)),
             contact=ContactLaw(self.contact_stiffness, self.contact_damping),
+            follows=self.base == "contact wire",
         )
 
     def in_words(self) -> list[tuple[str, str]]:
@@ -218,6 +224,8 @@ class ElasticPantograph(Parameters):
     """[N] on a wire at the nominal contact wire height; unset with a `law`"""
     stiffness: NonNegative = 0.0
     """[N/m] by which the force falls as the wire rises; 0: a constant force"""
+    base: Base = "contact wire"
+    """what elevations count from where the height changes: the contact wire's design height, or the rail"""
     law: tuple[tuple[Number, NonNegative], ...] = ()
     """pairs of elevation [m] above the nominal height and force [N], straight between, constant outside"""
 
@@ -259,7 +267,7 @@ class ElasticPantograph(Parameters):
     def assemble(self, *, spatial: bool) -> Substructure:
         """One strip without mass at the nominal contact wire height, and the law."""
         law = ContactLaw(self.stiffness, preload=self.force or 0.0, points=self.law)
-        return Substructure((), (), (), (Strip(),), law)
+        return Substructure((), (), (), (Strip(),), law, self.base == "contact wire")
 
     def in_words(self) -> list[tuple[str, str]]:
         """Names and values, for a table."""
@@ -294,6 +302,11 @@ class AttachedPantograph(Parameters):
     """[N/m] between each strip and contact wire, no tension"""
     contact_damping: NonNegative = 0.0
     """[N s/m] beside the contact stiffness, never pulling"""
+
+    @property
+    def base(self) -> Base:
+        """Its script moves it, or not."""
+        return "rail"
 
     @property
     def stages(self) -> tuple[Stage, ...]:

@@ -249,6 +249,9 @@ class Support(Parameters):
     """[N s/m] sideways, beside the stiffness"""
     steady_arm: SteadyArm | None = None
     """registration of the contact wire; unset: the contact wire is free here"""
+    contact_wire_height: Positive | None = None
+    """[m] of the contact wire at this support, above the rail; unset: the catenary's. Between supports the
+    design runs straight, sag and offsets of the droppers apart"""
     system_height: Positive | None = None
     """[m] between the wires at this support; unset: the catenary's"""
     stagger: Lateral = 0.0

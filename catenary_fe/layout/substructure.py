@@ -107,6 +107,7 @@ class Substructure:
     lifted : shape (bodies,), share of each in the uplift force
     strips : collector strips
     contact : the law between each strip and a wire
+    follows : whether the base's height follows the contact wire's design height, else the rail
     """
 
     bodies: tuple[Body, ...]
@@ -114,6 +115,7 @@ class Substructure:
     lifted: tuple[float, ...]
     strips: tuple[Strip, ...]
     contact: ContactLaw
+    follows: bool = True
 
     @cached_property
     def rolling(self) -> tuple[int, ...]:
@@ -145,6 +147,18 @@ class Substructure:
     def load(self) -> Floats:
         """Shape (size,): force on each coordinate by an uplift of 1 N."""
         return np.array([*self.lifted, *(0.0 for _ in self.rolling)])
+
+    @cached_property
+    def base_load(self) -> Floats:
+        """[N/m], shape (size,): force on each coordinate for each metre that the base has risen.
+
+        Of the springs alone: a frame keeps its force over its working range, but its dampers feel it move.
+        """
+        load = np.zeros(self.size)
+        for joint in self.joints:
+            if self.follows and joint.lower == BASE:
+                load[joint.upper] += joint.stiffness
+        return load
 
     def row(self, strip: Strip, lateral: float = 0.0) -> Floats:
         """Shape (size,): the strip's height over a place [m] to the left, as made of the coordinates."""

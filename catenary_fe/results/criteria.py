@@ -19,6 +19,7 @@ from catenary_fe.layout.current_collection import (
     PowerSystem,
     contact_loss_limit,
     force_limit,
+    gradient_limit,
     mean_force_limit,
 )
 from catenary_fe.layout.parameters import changed_by_copy
@@ -175,6 +176,7 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
         rows += _spread(statistics, system, figures.speed)
     rows += _uplift(figures)
     rows.append(_speed(figures))
+    rows += _gradients(figures)
     if figures.non_uniformity is not None:
         rows.append(
             Criterion(
@@ -289,6 +291,26 @@ def _uplift_row(uplift: float, clearance: float | None, source: str) -> Criterio
         source=source,
         recalled=clearance is not None,
     )
+
+
+def _gradients(figures: KeyFigures) -> list[Criterion]:
+    """Of the design line between supports, where it changes its height."""
+    if not figures.catenary.changes_height:
+        return []
+    limit, gradients = gradient_limit(figures.speed), figures.catenary.gradients.tolist()
+    steps = zip([0.0, *gradients], [*gradients, 0.0], strict=True)
+    steepest, bend = max(map(abs, gradients)), max(abs(after - before) for before, after in steps)
+    assert limit.value is not None
+    return [
+        Criterion(
+            name=name, value=round(1e3 * value, 9), limit=1e3 * share * limit.value, unit="‰",
+            source=limit.source, recalled=limit.recalled,
+        )
+        for name, value, share in (
+            ("gradient of the contact wire", steepest, 1.0),
+            ("change of the gradient", bend, 0.5),
+        )
+    ]  # fmt: skip
 
 
 def _speed(figures: KeyFigures) -> Criterion:

@@ -69,6 +69,13 @@ def _contact_stiffness(pantograph: AnyPantograph) -> float:
     return pantograph.assemble(spatial=False).contact.stiffness
 
 
+def _base(run: Run, number: int, pantograph: AnyPantograph) -> Floats:
+    """[m], shape (times,): height at which a pantograph's lowest spring is force-free."""
+    if pantograph.base == "rail":
+        return np.full(run.time.size, run.catenary.contact_wire_height)
+    return run.catenary.design_line(run.data["position"].values[number])
+
+
 def _name(run: Run, pantograph: int) -> str:
     return str(run.data["pantograph"].values[pantograph])
 
@@ -117,12 +124,12 @@ def _force_balance(run: Run) -> Iterator[Check]:
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         masses, heights = _chain(run, i, pantograph)
-        base = heights[-1] - run.catenary.contact_wire_height
+        base = heights[-1] - _base(run, i, pantograph)
         lowest, duration, grounded = pantograph.stages[-1], float(run.time[-1]), len(pantograph.stages) == 1
         if grounded:  # strips that share the only spring
-            base = heights.mean(axis=0) - run.catenary.contact_wire_height
+            base = heights.mean(axis=0) - _base(run, i, pantograph)
         pushed = np.trapezoid(uplift - force - lowest.stiffness * base, dx=run.step)
-        pushed -= lowest.damping * (base[-1] - base[0])
+        pushed -= lowest.damping * (heights[-1, -1] - heights[-1, 0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
         gained = masses @ velocity
         found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
@@ -159,12 +166,16 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
             continue
         masses, heights = _chain(run, i, pantograph)
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - run.catenary.contact_wire_height])
+        base = _base(run, i, pantograph)  # its springs' end; dampers stand on the vehicle's roof
+        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - base])
+        rates = np.diff(np.vstack([joints[:-1], heights[-1:]]))
         stiffness = np.array([stage.stiffness for stage in pantograph.stages])
         damping = np.array([stage.damping for stage in pantograph.stages])
         moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
         pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
-        lost = damping @ np.diff(joints) ** 2 / run.step
+        lost = damping @ rates**2 / run.step + stiffness[-1] * (
+            joints[-1, 1:] + joints[-1, :-1]
+        ) / 2 * np.diff(base)
         stored = (masses @ velocity**2 + stiffness @ joints**2) / 2
         balance = np.cumsum(pushed + uplift * moved[-1] - lost) - (stored[1:] - stored[0])
         share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)

@@ -110,10 +110,10 @@ class WireSubstructures:
     def _vertical_loads(self) -> Floats:
         """[N], shape (2 * nodes,), of the wires, what they carry at masts and stitch wires' clamps."""
         force = self.wires.load(self._distributed_loads()[-1])
-        for _, _, at, arm in self._arms():
+        for _, i, at, arm in self._arms():
             force[at] -= GRAVITY * arm.hanging_mass
             if arm.stiffness is not None and not arm.holds_height:
-                force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_height
+                force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_heights[i]
             elif not arm.holds_height:
                 force[at] += self._lift(at, arm)
         if self.catenary.stitch_wire:
@@ -125,12 +125,12 @@ class WireSubstructures:
 
     def _fixed_heights(self) -> Fixed:
         """Heights [m] that masts hold, by displacement."""
-        catenary = self.catenary
+        catenary, heights = self.catenary, self.catenary.contact_wire_heights.tolist()
         held: Fixed = {}
         last = len(catenary.supports) - 1
         for wire in range(self.mesh.contact_wires):
-            held |= {self._at_support(wire, i): catenary.contact_wire_height for i in (0, last)}
-        held |= {at: catenary.contact_wire_height for _, _, at, arm in self._arms() if arm.holds_height}
+            held |= {self._at_support(wire, i): heights[i] for i in (0, last)}
+        held |= {at: heights[i] for _, i, at, arm in self._arms() if arm.holds_height}
         for i, height in enumerate(catenary.messenger_support_heights.tolist()):
             held[self._at_support(self.mesh.contact_wires, i)] = height
         return held
@@ -315,7 +315,7 @@ class WireSubstructures:
         for wire, i, at, arm in self._arms():
             forces[wire, i] = self.reactions[:, at]
             if not arm.holds_height:
-                raised = self.found[-1, at] - self.catenary.contact_wire_height
+                raised = self.found[-1, at] - self.catenary.contact_wire_heights[i]
                 lift = self._lift(at, arm) if arm.stiffness is None else arm.preload - arm.stiffness * raised
                 forces[wire, i, -1] = lift
         return forces

@@ -130,9 +130,13 @@ class _StaticContact:
         bodies = [p.body for p in pantographs]
         self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])
         self.K = csr_matrix(block_diag(np.zeros((0, 0)), *(body.stiffness for body in bodies)))
-        self.load = np.concatenate([np.zeros(0), *(p.uplift * p.body.load for p in pantographs)])
+        risen = [system.base_line.under(p.body, p.position) for p in pantographs]
+        loads = [
+            p.uplift * p.body.load + z * p.body.base_load for p, z in zip(pantographs, risen, strict=True)
+        ]
+        self.load = np.concatenate([np.zeros(0), *loads])
         rows = lil_matrix((len(self.contacts), int(self.first[-1])))
-        self.rest = np.zeros(len(self.contacts))
+        self.rest, self.base = np.zeros((2, len(self.contacts)))
         for j, contact in enumerate(self.contacts):
             path = system.contact_paths[contact.wire]
             e, weights = path.at(contact.position)
@@ -143,6 +147,8 @@ class _StaticContact:
             own = slice(*self.first[contact.pantograph : contact.pantograph + 2])
             rows[j, own] = bodies[contact.pantograph].row(contact.strip, lateral)
             self.rest[j] = float(weights @ profile) - system.contact_wire_height
+            if contact.strip.body is None:
+                self.base[j] = risen[contact.pantograph]
         self.rows: Any = rows.tocsr()
 
     def guess(self) -> Floats:
@@ -162,7 +168,7 @@ class _StaticContact:
 
     def depths(self, x: Floats) -> Floats:
         """[m], shape (contacts,), of the strips in the wires."""
-        depths: Floats = self.rows @ x - self.rest
+        depths: Floats = self.rows @ x + self.base - self.rest
         return depths
 
     def forces(self, x: Floats) -> Floats:

@@ -11,7 +11,7 @@ from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, Catenary, InputError, counted
 from catenary_fe.layout.arguments import numbers
-from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
+from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE, gradient_limit
 from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import Shape
@@ -90,6 +90,14 @@ def run_warnings(
             f" {3.6 * wave_speed:.0f} km/h; the rule is at most {WAVE_SPEED_SHARE:g}, as waves pile up ahead"
             " of the pantograph; raise contact_wire.tension, or lower the speed"
         )
+    limit = gradient_limit(speed).value or 0.0
+    for span, gradient in enumerate(catenary.gradients.tolist(), start=1):
+        if abs(gradient) > limit + 1e-9:
+            found.append(
+                f"span {span}: the contact wire's gradient of {1e3 * gradient:.3g} ‰ is above the"
+                f" {1e3 * limit:g} ‰ that EN 50119 (recalled) has for {3.6 * speed:.4g} km/h: spread the"
+                " change of height over more spans, or lower the speed"
+            )
     longest = float(np.diff(shape.mesh.contact.x).max())
     wavelength = (wave_speed - speed) / CUT_OFF
     if 0 < wavelength < longest:  # beyond the wave speed nothing runs ahead

@@ -43,17 +43,19 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
 
 def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = None) -> Axes:
     catenary = shape.catenary
-    nominal = catenary.contact_wire_height
+    nominal = catenary.design_line
     frame(ax, part)
     style.mark_supports(ax, part.support_x)
     names = ["contact wire"] if len(shape.contact_wires) == 1 else ["right contact wire", "left contact wire"]
     for wire, name, colour in zip(shape.contact_wires, names, (style.CONTACT, _LEFT), strict=False):
         x = part.sampled(wire.x)
-        ax.plot(x, 1e3 * (wire.height(x) - nominal), color=colour, linewidth=1.4, label=name)
+        ax.plot(x, 1e3 * (wire.height(x) - nominal(x)), color=colour, linewidth=1.4, label=name)
     chosen = part.inside(catenary.dropper_positions)
-    x, design = catenary.dropper_positions[chosen], 1e3 * (catenary.design_heights[chosen] - nominal)
+    x = catenary.dropper_positions[chosen]
+    design = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
     ax.plot(x, design, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
+    above = "the line between supports" if catenary.changes_height else "nominal"
     style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
     if detail:
@@ -62,7 +64,7 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
         texts = [f"{force:.0f} N" for force in shape.dropper_forces[chosen]]
         if style.label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
-    return _finished(ax, part, "height above nominal (mm)", what)
+    return _finished(ax, part, f"height above {above} (mm)", what)
 
 
 def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:

@@ -202,8 +202,7 @@ def sketched_lines(catenary: Catenary, part: Stretch) -> list[Line]:
     """Contact wires at design heights, messenger wire as parabolas, stitch wires straight."""
     supports, heights = catenary.support_positions, catenary.messenger_support_heights
     x = np.concatenate([supports, catenary.dropper_positions])
-    nominal = np.full(supports.size, catenary.contact_wire_height)
-    z = np.concatenate([nominal, catenary.design_heights])
+    z = np.concatenate([catenary.contact_wire_heights, catenary.design_heights])
     order = np.argsort(x)
     contact_wires = len(catenary.contact_wire_offsets)
     mass = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length

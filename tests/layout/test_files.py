@@ -248,7 +248,7 @@ def test_elastic_pantographs_in_files(tmp_path):
     assert varied_pantograph(str(path), {"pantograph.law.1.2": 90.0}).contact_force(-1.0) == 90.0
     for text, said in (
         ("force = 120.0\n" + law, "force and law: give exactly one"),
-        (law + "uplift_force = 60.0\n", "unknown key uplift_force; known keys: force, law"),
+        (law + "uplift_force = 60.0\n", "unknown key uplift_force; known keys: base, force, law"),
         ("law = [[0.2, 60.0], [-0.1, 150.0]]\n", "law: after 60 N at 0.2 m comes 150 N"),
         (law + "stages = [{ mass = 7.0, stiffness = 7e3 }]\n", "unknown key law"),
     ):

@@ -148,11 +148,22 @@ class ExudynModel:
         """
         self.contacts.move_to(positions, speed)
 
-    def lift(self, uplifts: Sequence[float] | Floats) -> None:
-        """Set the uplift forces [N], one a pantograph; attached ones have loads of their own."""
-        for parts, uplift in zip(self.pantographs, uplifts, strict=True):
-            for load, share in parts.loads:
-                self.mbs.SetLoadParameter(load, "load", share * float(uplift))
+    def lift(self, uplifts: Sequence[float] | Floats, positions: Sequence[float] | Floats) -> None:
+        """Set uplift forces [N], one a pantograph, and heights of the bases at these positions [m].
+
+        Attached ones have loads of their own.
+        """
+        for parts, uplift, x in zip(self.pantographs, uplifts, positions, strict=True):
+            if parts.substructure is None:
+                continue
+            risen = self.system.base_line.under(parts.substructure, float(x))
+            for load, share, base in parts.loads:
+                self.mbs.SetLoadParameter(load, "load", share * float(uplift) + base * risen)
+            for contact in parts.contacts:
+                if contact.strip is not None and contact.strip.body is None:
+                    height = (self.system.contact_wire_height + risen) * np.eye(3)[self.system.axes - 1]
+                    node = self.mbs.GetMarker(contact.strip_marker)["nodeNumber"]
+                    self.mbs.SetNodeParameter(node, "referenceCoordinates", list(height))
 
     def load_at(self, time: float) -> None:
         """Give the loads of the line that vary in time their values at a time [s]."""

@@ -72,7 +72,7 @@ class ExudynEngine:
             _start(model, case, uplifts, settle=self._model is not None)
             recorder = _Recorder(model, case, uplifts, self._time, (self._every, self._energy_every))
             try:
-                _integrate(model, case, recorder, self._time, progress)
+                _integrate(model, case, uplifts, recorder, self._time, progress)
             except (SolverError, KeyboardInterrupt) as error:
                 raise RunStopped(recorder.history().until(recorder.done), error) from None
             return recorder.history()
@@ -102,7 +102,7 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
     else:
         q[: system.place.size] = 0.0
     model.load_at(0.0)
-    model.lift(uplifts)
+    model.lift(uplifts, case.start)
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
     _set_state(model, q, np.zeros_like(q))
     if settle:
@@ -118,7 +118,12 @@ def _set_state(model: ExudynModel, q: Floats, v: Floats) -> None:
 
 
 def _integrate(
-    model: ExudynModel, case: RunCase, recorder: _Recorder, time: TimeSettings, progress: Progress | None
+    model: ExudynModel,
+    case: RunCase,
+    uplifts: Floats,
+    recorder: _Recorder,
+    time: TimeSettings,
+    progress: Progress | None,
 ) -> None:
     """Step to the end; where a step fails, on from the state before it in smaller ones for a while.
 
@@ -135,6 +140,8 @@ def _integrate(
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
             model.load_at(end)
+            if model.system.base_line.varies:
+                model.lift(uplifts, case.start + case.speed * end)
             contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
@@ -333,6 +340,8 @@ class _EnergyBalance:
         found, paths = np.zeros(size), self._model.system.contact_paths
         found[: self._line] = self._model.system.varying(time)
         for i, (parts, body, index, _) in enumerate(self._bodies):
+            risen = self._model.system.base_line.under(body, float(positions[i]))
+            found[index] += risen * body.base_load
             for contact, force in zip(parts.contacts, forces[i], strict=True):
                 path = paths[contact.wire]
                 e, weights = path.at(float(positions[i]) + contact.ahead)

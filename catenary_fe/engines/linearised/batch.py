@@ -62,7 +62,7 @@ class Batch:
         self._operator = make_operator(setup, slots)
         self.signals = np.zeros((len(setup.line.patterns), sizes.steps + 2)) if signals is None else signals
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
-        self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal)
+        self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal, setup.base_line)
         width = 2 * line.contact_compliance.value.shape[1]
         self.work = Work(
             force=np.zeros((slots, j)),
@@ -78,6 +78,7 @@ class Batch:
             rise=np.zeros((slots, j, 5)),
             at=np.zeros((slots, j, 4), dtype=np.int64),
             on=np.zeros((slots, j), dtype=np.int64),
+            base=np.zeros((slots, j)),
             head=np.zeros((slots, j, m)),
             head_compliance=np.zeros((slots, j, m)),
         )

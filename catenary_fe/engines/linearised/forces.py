@@ -14,6 +14,7 @@ from catenary_fe.engines.contact_solver import (
     TOLERANCE,
     free_heads,
     one_way,
+    place_base,
     place_head,
     update_contact,
     weigh_contact,
@@ -164,19 +165,20 @@ def solve_contacts(
     c: int,
 ) -> None:
     """Forces of contacts and droppers of one slot at the step's end."""
-    contacts = 0
+    contacts, time = 0, scheme.h * (pantographs.step[c] + 1)
     for j in range(heads.owner.shape[1]):
         work.force[c, j] = 0.0
         if heads.owner[c, j] >= 0:
-            position = heads.start[c, j] + heads.speed[c, j] * scheme.h * (pantographs.step[c] + 1)
+            position = heads.start[c, j] + heads.speed[c, j] * time
             place_contact(line, heads, work, c, j, position)
+            place_base(heads, work, c, j, time)
             contacts += 1
     for a in range(work.active_count[c]):
         work.slack[c, work.active[c, a]] = 0.0
     links = line.links.k.size
     if links > 0:
         work.arm_force[c, :, :] = 0.0
-    free_heads(heads, pantographs, c)
+    free_heads(heads, pantographs, c, time)
     settled, change = True, 0.0
     while True:
         for _ in range(SWEEPS):

@@ -84,7 +84,7 @@ class LinearisedEngine:
         store_wire: float | None = None,
     ) -> None:
         self._system, self._time = system, time or TimeSettings()
-        self.setup: Setup = set_up(model, self._time, system.beta, system.contact_wire_height)
+        self.setup: Setup = set_up(model, self._time, system)
         self._every = round(store_wire / self._time.step) if store_wire else 0
 
     def run(self, tasks: Sequence[Task], progress: Progress | None = None) -> None:

@@ -18,8 +18,10 @@ from catenary_fe.engines.linearised.arrays import (
     StretchCoupling,
 )
 from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.fe.contact import BaseLine
 from catenary_fe.fe.reduction import LinearModel
 from catenary_fe.fe.spring import FIXED
+from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -35,6 +37,7 @@ class Setup:
     factor : of the step's matrix, as scipy has it
     static : factor of the stiffness
     nominal : [m], contact wire height
+    base_line : what the bases of pantographs follow
     """
 
     model: LinearModel
@@ -43,6 +46,7 @@ class Setup:
     factor: Any
     static: Any
     nominal: float
+    base_line: BaseLine
     beta: float
     stiffness: Any
     rest: Any
@@ -58,12 +62,9 @@ class Setup:
         return int(self.stiffness.shape[0])
 
 
-def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) -> Setup:
-    """Factorise for a time step.
-
-    beta : [s] of the Rayleigh damping, which most of the damping matrix follows
-    nominal : [m] contact wire height
-    """
+def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
+    """Factorise for a time step; most of the damping matrix follows the system's Rayleigh damping."""
+    beta, nominal = system.beta, system.contact_wire_height
     scheme = make_scheme(time)
     model = _filled_up(model)
     factor = factorise(model.mass + scheme.g * model.damping + scheme.b * model.stiffness)
@@ -72,7 +73,9 @@ def set_up(model: LinearModel, time: TimeSettings, beta: float, nominal: float) 
     rest = (model.damping - beta * K).tocsr()
     rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max(initial=0.0)] = 0.0
     rest.eliminate_zeros()
-    return Setup(model, scheme, _line(model, factor), factor, static, nominal, beta, K, rest)
+    return Setup(
+        model, scheme, _line(model, factor), factor, static, nominal, system.base_line, beta, K, rest
+    )
 
 
 def make_operator(setup: Setup, slots: int) -> Operator:

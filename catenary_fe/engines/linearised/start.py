@@ -79,14 +79,18 @@ class _Contact:
         self._setup, self._pantographs = setup, pantographs
         self._first = np.cumsum([0, *(placed.body.size for placed in pantographs)])
         self._contacts = contacts_of(pantographs, len(setup.model.contacts))
-        rows, rest, heads = [], [], []
+        rows, rest, heads, base = [], [], [], []
         for contact in self._contacts:
             row, height, lateral = contact_row(setup, contact.wire, contact.position)
             rows.append(row)
             rest.append(height)
+            placed = pantographs[contact.pantograph]
+            base.append(
+                setup.base_line.under(placed.body, placed.position) if contact.strip.body is None else 0.0
+            )
             heads.append(pantographs[contact.pantograph].body.row(contact.strip, lateral))
         self._rows: Floats = np.array(rows)
-        self._rest, self._heads = np.array(rest), heads
+        self._rest, self._heads, self._base = np.array(rest), heads, np.array(base)
         self._lifts = setup.static.solve(np.ascontiguousarray(self._rows.T)).reshape(-1, len(rows))
         laws = [pantographs[contact.pantograph].body.contact for contact in self._contacts]
         self._laws = laws
@@ -95,7 +99,7 @@ class _Contact:
 
     def take_tangents(self, forces: Floats, q: Floats) -> bool:
         """Take the straight piece of each law of points where its contact is; true if one changed."""
-        changed, wire = False, self._rest + self._rows @ q
+        changed, wire = False, self._rest + self._rows @ q - self._base
         for j, law in enumerate(self._laws):
             if not law.points:
                 continue
@@ -128,7 +132,8 @@ class _Contact:
         for p, placed in enumerate(self._pantographs):
             part = slice(self._first[p], self._first[p + 1])
             A[part, part] = placed.body.stiffness
-            right[part] = placed.uplift * placed.body.load
+            risen = self._setup.base_line.under(placed.body, placed.position)
+            right[part] = placed.uplift * placed.body.load + risen * placed.body.base_load
         for j in range(count):
             self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ shifted))
         for i, dropper in enumerate(slack):
@@ -157,7 +162,7 @@ class _Contact:
             return
         A[row, row] += 1 / k
         A[row, part] = -self._heads[j]
-        right[row] = preload / k - self._rest[j] - raised
+        right[row] = preload / k + self._base[j] - self._rest[j] - raised
 
     def placed(self, heads: Floats, forces: Floats, q: Floats) -> list[PlacedPantograph]:
         """The pantographs where they start."""

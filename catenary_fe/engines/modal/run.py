@@ -90,6 +90,8 @@ def _check_fit(shape: Shape, modes: Modes) -> None:
         raise InputError("modal run: no mode is left below the cut-off; raise it")
     if modes.catenary != shape.catenary or not np.array_equal(modes.contact.x, shape.wires[0].x):
         raise InputError("modal run: the modes are of another line or mesh; give solve_modes(shape)")
+    if shape.catenary.changes_height:
+        raise InputError("modal run: the contact wire changes its height along the line; use simulate")
     if len(shape.contact_wires) > 1:
         raise InputError("modal run: the line has two contact wires, the modal run knows one; use simulate")
 

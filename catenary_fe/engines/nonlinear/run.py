@@ -109,7 +109,7 @@ class NonlinearRun:
         self._start = _initial_state(system, moved, pantographs, speed)
         paths = system.contact_paths
         sizes = Sizes.of([pantographs], len(paths), steps, engine._every)
-        heads, own = make_pantographs(1, sizes, system.contact_wire_height)
+        heads, own = make_pantographs(1, sizes, system.contact_wire_height, system.base_line)
         total = system.reference + moved
         self.records = self._records(sizes, total, engine._every)
         load_pantographs(heads, own, self.records, 0, engine._scheme, self._start, steps)

@@ -120,6 +120,7 @@ def _work(sizes: Sizes) -> Work:
         rise=np.zeros((1, j, 5)),
         at=np.zeros((1, j, 4), dtype=np.int64),
         on=np.zeros((1, j), dtype=np.int64),
+        base=np.zeros((1, j)),
         head=np.zeros((1, j, m)),
         head_compliance=np.zeros((1, j, m)),
     )

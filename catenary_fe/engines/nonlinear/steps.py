@@ -16,7 +16,9 @@ from catenary_fe.engines.contact_solver import (
     SWEEPS,
     TOLERANCE,
     advance_heads,
+    base_height,
     free_heads,
+    place_base,
     place_head,
     update_contact,
     weigh_contact,
@@ -53,13 +55,14 @@ def _place(
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
     axes = total.size // (2 * stations.rest.size)
     advance_heads(scheme, pantographs, 0)
-    free_heads(heads, pantographs, 0)
+    free_heads(heads, pantographs, 0, time)
     for j in range(heads.owner.shape[1]):
         p = heads.owner[0, j]
         if p < 0:
             continue
         position = heads.start[0, j] + heads.speed[0, j] * time
         e, _ = weigh_contact(stations, heads, work, 0, j, position)
+        place_base(heads, work, 0, j, time)
         place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
         first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
         work.first[0, j], work.width[0, j] = first, width
@@ -186,6 +189,7 @@ def _add_energy(
     pantographs: PantographState,
     work: Work,
     energy: EnergyBalance,
+    time: float,
 ) -> None:
     """Add what contacts did and dampers took in this step, or part of one."""
     moved, drag, lost = motion.before, motion.residual, 0.0
@@ -203,6 +207,7 @@ def _add_energy(
         lost += (energy.damper[i] + energy.new_damper[i]) * stretch / 2
         energy.damper[i], energy.span[i] = energy.new_damper[i], energy.new_span[i]
     energy.work[0] += _contact_work(scheme, heads, pantographs, work, energy, moved)
+    energy.work[0] += _base_work(scheme, heads, pantographs, energy, time)
     energy.work[1] += lost + _head_losses(scheme, heads, pantographs, energy)
 
 
@@ -235,6 +240,25 @@ def _contact_work(
             energy.head[j, s] = work.head[0, j, s]
         driven += (energy.force[j] * before + work.force[0, j] * now) / 2
         energy.force[j] = work.force[0, j]
+    return driven
+
+
+@compiled
+def _base_work(
+    scheme: Scheme,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    energy: EnergyBalance,
+    time: float,
+) -> float:
+    """Work of the rising bases on the masses in the step that ends at a time [J]."""
+    driven = 0.0
+    for p in range(pantographs.x.shape[1]):
+        risen = (base_height(heads, 0, p, time - scheme.h) + base_height(heads, 0, p, time)) / 2
+        if risen != 0.0:
+            for s in range(pantographs.x.shape[2]):
+                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
+                driven += risen * heads.base_load[0, p, s] * (place - energy.heads[p, s])
     return driven
 
 
@@ -316,7 +340,7 @@ def _loop(sources: str) -> Any:
                     break
             if not converged:
                 return False, iterations
-            _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy)
+            _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy, scheme.h * (n + 1))
             for k in range(system.patterns.shape[0]):
                 mean = (signals[k, n - begin] + signals[k, n + 1 - begin]) / 2
                 energy.work[0] += mean * (system.patterns[k] * motion.before).sum()
