@@ -297,7 +297,7 @@ class Catenary(Parameters):
     def planar(self) -> Self:
         """The same line in the vertical plane: no stagger, no curves, links as springs.
 
-        A link under the sideways pull H acts in the plane like a vertical spring of H over its length.
+        A link under the lateral force H acts in the plane like a vertical spring of H over its length.
 
         Raises InputError for a link so short, or pulled so hard, that no spring can stand for it.
         """

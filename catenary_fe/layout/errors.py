@@ -32,7 +32,7 @@ class InputError(CatenaryError, ValueError):
 
 
 class SolverError(CatenaryError, RuntimeError):
-    """A static or dynamic solve did not end well; the text says where, when and what to try.
+    """A static or dynamic solve failed; the text says where, when and what to try.
 
     partial : the run until then (:class:`catenary_fe.Run`), where one had begun
     """

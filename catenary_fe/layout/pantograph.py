@@ -45,7 +45,7 @@ class AerodynamicForce(Parameters):
     """[N s/m] b, times the speed in m/s"""
 
     def at(self, speed: float) -> float:
-        """[N] at a speed in m/s. Raises InputError for what is none."""
+        """[N] at a speed in m/s. Raises InputError for a negative or non-finite speed."""
         speed = number("speed", speed, "m/s", least=0.0)
         return self.quadratic * speed**2 + self.linear * speed
 
@@ -209,7 +209,33 @@ class Pantograph(Parameters):
         return target_mean_force(self.mean_force, speed)
 
 
-class ElasticPantograph(Parameters):
+class _WithoutStages(Parameters):
+    """A pantograph whose bodies the program does not know: no stages, and no uplift to set."""
+
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """None."""
+        return ()
+
+    @property
+    def head(self) -> None:
+        """None."""
+        return None
+
+    @property
+    def panhead(self) -> Panhead:
+        """The usual one."""
+        return Panhead()
+
+    def with_uplift(self, uplift: float) -> Self:
+        """Itself: it has no uplift force of its own."""
+        return self
+
+    def target_mean_force(self, speed: float) -> None:
+        """None: its law or its loads decide the mean force."""
+
+
+class ElasticPantograph(_WithoutStages):
     """A pantograph without masses whose force falls as the wire rises, and never pulls.
 
     Either linear, F = max(0, force − stiffness · elevation), or by a ``law`` of points. Source: the paper
@@ -246,23 +272,8 @@ class ElasticPantograph(Parameters):
         return self
 
     def contact_force(self, elevation: float) -> float:
-        """[N] on a wire at an elevation [m] above its nominal height. Raises InputError for what is none."""
+        """[N] on a wire at an elevation [m] above its nominal height. Raises InputError unless finite."""
         return self.assemble(spatial=False).contact.force(-number("elevation", elevation, "m"))
-
-    @property
-    def stages(self) -> tuple[Stage, ...]:
-        """None: it has no masses."""
-        return ()
-
-    @property
-    def head(self) -> None:
-        """None: it is a point."""
-        return None
-
-    @property
-    def panhead(self) -> Panhead:
-        """The usual one."""
-        return Panhead()
 
     def assemble(self, *, spatial: bool) -> Substructure:
         """One strip without mass at the nominal contact wire height, and the law."""
@@ -281,15 +292,8 @@ class ElasticPantograph(Parameters):
         """[N] on a wire at its nominal height, at any speed."""
         return self.contact_force(0.0)
 
-    def with_uplift(self, uplift: float) -> Self:
-        """Itself: the law decides."""
-        return self
 
-    def target_mean_force(self, speed: float) -> None:
-        """None: the law decides the mean force."""
-
-
-class AttachedPantograph(Parameters):
+class AttachedPantograph(_WithoutStages):
     """What results record of a pantograph that a script made of bodies of its own in the multibody model."""
 
     attached: Literal[True] = True
@@ -308,21 +312,6 @@ class AttachedPantograph(Parameters):
         """Its script moves it, or not."""
         return "rail"
 
-    @property
-    def stages(self) -> tuple[Stage, ...]:
-        """None that are known."""
-        return ()
-
-    @property
-    def head(self) -> None:
-        """None that is known."""
-        return None
-
-    @property
-    def panhead(self) -> Panhead:
-        """The usual one."""
-        return Panhead()
-
     def assemble(self, *, spatial: bool) -> Substructure:
         """Raises InputError: only the script that made the bodies knows them."""
         raise InputError(
@@ -339,13 +328,6 @@ class AttachedPantograph(Parameters):
     def static_uplift(self, speed: float) -> float:
         """[N] that a run adds: none, the bodies have loads of their own."""
         return 0.0
-
-    def with_uplift(self, uplift: float) -> Self:
-        """Itself."""
-        return self
-
-    def target_mean_force(self, speed: float) -> None:
-        """None: its loads decide the mean force."""
 
 
 DescribedPantograph = Pantograph | ElasticPantograph

@@ -31,7 +31,7 @@ class Joint:
 
     upper, lower : numbers of the bodies; the lower one may be ``BASE``
     stiffness, damping : [N/m], [N s/m]
-    lever : [m] sideways from the middle to each half of the spring, against which the upper body rolls
+    lever : [m] lateral distance of each half of the spring from the middle; the upper body rolls on them
     """
 
     upper: int

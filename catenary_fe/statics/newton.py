@@ -138,15 +138,13 @@ class _StaticContact:
         rows = lil_matrix((len(self.contacts), int(self.first[-1])))
         self.rest, self.base = np.zeros((2, len(self.contacts)))
         for j, contact in enumerate(self.contacts):
-            path = system.contact_paths[contact.wire]
-            e, weights = path.at(contact.position)
-            dof, profile = path.dof[e : e + 2].ravel(), path.profile[e : e + 2].ravel()
-            for i, weight in zip(dof[dof >= 0], weights[dof >= 0], strict=True):
-                rows[j, i] -= weight
-            lateral = float(weights @ path.lateral[e : e + 2].ravel())
+            row, lateral = system.row(contact.wire, contact.position), 0.0
+            if system.spatial:
+                lateral = float(system.row(contact.wire, contact.position, 1) @ system.reference)
+            rows[j, : system.size] = -system.gather(row)
             own = slice(*self.first[contact.pantograph : contact.pantograph + 2])
             rows[j, own] = bodies[contact.pantograph].row(contact.strip, lateral)
-            self.rest[j] = float(weights @ profile) - system.contact_wire_height
+            self.rest[j] = float(row @ system.reference) - system.contact_wire_height
             if contact.strip.body is None:
                 self.base[j] = risen[contact.pantograph]
         self.rows: Any = rows.tocsr()
@@ -166,25 +164,17 @@ class _StaticContact:
         """Displacements of the line, shape (all,)."""
         return self.system.spread(x[: self.system.size])
 
-    def depths(self, x: Floats) -> Floats:
-        """[m], shape (contacts,), of the strips in the wires."""
-        depths: Floats = self.rows @ x + self.base - self.rest
-        return depths
-
-    def forces(self, x: Floats) -> Floats:
-        """[N], shape (contacts,)."""
-        return self._of_laws("force", x)
-
     def _of_laws(self, what: str, x: Floats) -> Floats:
+        """Shape (contacts,): "force" [N], "slope" [N/m] or "energy" [J] of each contact."""
         laws = [self.pantographs[contact.pantograph].body.contact for contact in self.contacts]
-        depths = self.depths(x).tolist()
+        depths = (self.rows @ x + self.base - self.rest).tolist()
         return np.array([getattr(law, what)(depth) for law, depth in zip(laws, depths, strict=True)])
 
     def residual(self, x: Floats) -> Floats:
         n = self.system.size
         line = self.system.gather(self.system.out_of_balance(self.line_part(x))) + self.varying
         own = self.load - self.K @ x[n:]
-        residual: Floats = np.concatenate([line, own]) - self.rows.T @ self.forces(x)
+        residual: Floats = np.concatenate([line, own]) - self.rows.T @ self._of_laws("force", x)
         return residual
 
     def tangent(self, x: Floats) -> Any:
@@ -200,7 +190,8 @@ class _StaticContact:
         return self.system.energy(self.line_part(x)) + own
 
     def placed(self, x: Floats) -> list[PlacedPantograph]:
-        forces, heights = self.forces(x), self.rest - self.rows[:, : self.system.size] @ x[: self.system.size]
+        n, forces = self.system.size, self._of_laws("force", x)
+        heights = self.rest - self.rows[:, :n] @ x[:n]
         found = []
         for number, placed in enumerate(self.pantographs):
             mine = [j for j, contact in enumerate(self.contacts) if contact.pantograph == number]

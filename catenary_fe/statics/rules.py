@@ -71,7 +71,7 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
             steep = np.arctan2(abs(up), abs(left))
             if abs(left) < _LEAST_PULL:
                 faults.append(
-                    f"support {i}: nothing pulls the steady arm sideways ({abs(left):.2f} N): a link needs a"
+                    f"support {i}: no lateral force on the steady arm ({abs(left):.2f} N): a link needs a"
                     " stagger or a curve; give one, or a stiffness instead of a length"
                 )
             elif arm.side and arm.side != side:
@@ -82,7 +82,7 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
             elif steep > STEEPEST:
                 faults.append(
                     f"support {i}: the steady arm would stand up by {degrees(steep):.0f}° to hold {up:.0f} N"
-                    f" of weight with {abs(left):.0f} N of sideways pull, more than {degrees(STEEPEST):.0f}°;"
+                    f" of weight with {abs(left):.0f} N of lateral force, more than {degrees(STEEPEST):.0f}°;"
                     " give more stagger, or a stiffness instead of a length"
                 )
     _report(dict.fromkeys(faults))

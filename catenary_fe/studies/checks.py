@@ -36,7 +36,7 @@ def check_speed(speed: float) -> None:
 
 
 def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float, end: float) -> None:
-    """Raises InputError where a contact wire leaves a head sideways, or a pantograph has one wire too many.
+    """Raises InputError where a contact wire leaves the panhead, or a pantograph has one wire too many.
 
     start, end : [m] along the line, what is run over
     """

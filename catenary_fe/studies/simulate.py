@@ -84,8 +84,8 @@ def simulate(
 
     Raises InputError for a speed in the wrong unit, energies, a checkpoint or a model of another method, a
     checkpoint of another run, a model of another line, a run that would end beyond the line or take more
-    memory than there is, a pantograph that the air pushes down or a contact wire that leaves the head
-    sideways, SolverError where a solve fails or the mean force is not reached, RunInterrupted after Ctrl-C;
+    memory than there is, a pantograph that the air pushes down or a contact wire that leaves the
+    panhead, SolverError where a solve fails or the mean force is not reached, RunInterrupted after Ctrl-C;
     both have the run until then as ``partial``.
     """
     runs: Sequence[AnyPantograph] = pantographs

@@ -20,7 +20,7 @@ def test_an_arm_on_the_wrong_side_would_push(staggered):
 
 def test_nothing_pulls_an_arm_without_stagger(staggered):
     supports = tuple(s.replace(stagger=0.0) for s in staggered.supports)
-    with pytest.raises(cf.InputError, match="support 2: nothing pulls the steady arm sideways"):
+    with pytest.raises(cf.InputError, match="support 2: no lateral force on the steady arm"):
         cf.find_form(staggered.replace(supports=supports))
 
 

@@ -71,7 +71,7 @@ def test_a_dropper_far_too_soft_is_named_by_its_stiffness(reference):
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_links_need_a_pull(linked, side):
     check_links(linked, forces(1.0 * side, 0.5))
-    with pytest.raises(cf.InputError, match=r"support 3: nothing pulls the steady arm sideways \(0\.99 N\)"):
+    with pytest.raises(cf.InputError, match=r"support 3: no lateral force on the steady arm \(0\.99 N\)"):
         check_links(linked, forces(0.99 * side, 0.5))
 
 
