@@ -40,9 +40,7 @@ class Variable:
         """
         record = copy.deepcopy(self._record)
         changes = {place: v for place, v in values.items() if not place.startswith(PANTOGRAPH)}
-        for place, value in changes.items():
-            replace_at(record, place, value)
-        said = ", ".join([str(self._path), *(f"{place} = {value!r}" for place, value in changes.items())])
+        said = _changed(record, str(self._path), changes)
         try:
             return LayoutFile.model_validate(record).catenary()
         except ValidationError as error:
@@ -63,13 +61,18 @@ def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> DescribedPan
     if not changes:
         return pantograph
     record = pantograph.model_dump(mode="json")
-    for place, value in changes.items():
-        replace_at(record, place, value)
-    said = ", ".join([name_or_path, *(f"{place} = {value!r}" for place, value in changes.items())])
+    said = _changed(record, name_or_path, changes)
     try:
         return type(pantograph).model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, type(pantograph), where=said)) from None
+
+
+def _changed(record: dict[str, Any], name: str, changes: dict[str, Any]) -> str:
+    """Put values in their places; returns name and changes in words."""
+    for place, value in changes.items():
+        replace_at(record, place, value)
+    return ", ".join([name, *(f"{place} = {value!r}" for place, value in changes.items())])
 
 
 def replace_at(record: dict[str, Any], place: str, value: Any) -> None:

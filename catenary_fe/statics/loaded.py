@@ -137,7 +137,7 @@ class _Surroundings:
         """Elements and springs, their coordinates numbered anew."""
         index, springs = inside.elements(), (inside.droppers, inside.arms)
         used = np.unique(np.concatenate([index.ravel(), *(s.index().ravel() for s in springs)]))
-        self.axes, self._reference, self._place = inside.axes, inside.reference[used], inside.place[used]
+        self.axes, self._reference, self._dof = inside.axes, inside.reference[used], inside.place[used]
         self._index, self._cables = np.searchsorted(used, index), inside.cables
         self._springs = [
             replace(s, first=np.searchsorted(used, s.first), last=np.searchsorted(used, s.last))
@@ -165,7 +165,7 @@ class _Surroundings:
 
     def _near(self, moved: Floats) -> Floats:
         """Shape (points, coordinates inside), of the free ones."""
-        return np.where(self._place >= 0, moved[:, self._place], 0.0)
+        return np.where(self._dof >= 0, moved[:, self._dof], 0.0)
 
     def extra(self, free: Floats) -> Floats:
         """[N], shape (points, part): what the line's forces have that its tangent at rest has not.
@@ -249,6 +249,6 @@ class _Surroundings:
 def _summed(values: Floats, index: Integers, size: int) -> Floats:
     """Shape (points, size), of values at coordinates, shape (points, *index.shape)."""
     points = len(values)
-    place = (size * np.arange(points)[:, None] + index.ravel()).ravel()
-    summed = np.bincount(place, values.reshape(points, -1).ravel(), minlength=points * size)
+    at = (size * np.arange(points)[:, None] + index.ravel()).ravel()
+    summed = np.bincount(at, values.reshape(points, -1).ravel(), minlength=points * size)
     return np.asarray(summed, dtype=float).reshape(points, size)

@@ -249,7 +249,7 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
     pull[:, -1] = -GRAVITY
     if axes == 3:
         pull[:, 1] = np.concatenate(curve_pulls(wires.catenary, wires.mesh))
-    place = (left[:, None] * axes + np.arange(2 * axes)).astype(np.int64)
+    index = (left[:, None] * axes + np.arange(2 * axes)).astype(np.int64)
     for iteration in range(_ITERATIONS):
         cables = Cables(lengths, EA, wires.bending_stiffness, -T / EA)
         values = np.stack([points[left], slopes[left], points[left + 1], slopes[left + 1]], axis=1)
@@ -257,8 +257,8 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
         moment = (wires.weight * lengths**2 / 12)[:, None] * pull
         moments = np.concatenate([moment - inner[:, 1], -moment - inner[:, 3]], axis=1)
         if iteration < _FACTORS:
-            factor = _factor(place, tangent_blocks(cables, values, definite=True), axes, slopes.size)
-        out = np.bincount(place.ravel(), moments.ravel(), minlength=slopes.size)
+            factor = _factor(index, tangent_blocks(cables, values, definite=True), axes, slopes.size)
+        out = np.bincount(index.ravel(), moments.ravel(), minlength=slopes.size)
         turn = cho_solve_banded((factor, False), out).reshape(slopes.shape)
         longer = (inner[:, 2, 0] - wires.tension) / EA
         slopes, lengths = slopes + turn, lengths * (1 + longer)
@@ -273,10 +273,10 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
     return slopes, lengths
 
 
-def _factor(place: Integers, blocks: Floats, axes: int, size: int) -> Floats:
+def _factor(index: Integers, blocks: Floats, axes: int, size: int) -> Floats:
     """Banded Cholesky factor of the slopes' stiffness.
 
-    place : shape (elements, 2 * axes), numbers of the slopes
+    index : shape (elements, 2 * axes), numbers of the slopes
     blocks : shape (elements, 4 * axes, 4 * axes), of points and slopes
     """
     from scipy.linalg import cholesky_banded
@@ -286,7 +286,7 @@ def _factor(place: Integers, blocks: Floats, axes: int, size: int) -> Floats:
     bands = np.zeros((2 * axes, size))
     np.add.at(
         bands,
-        (2 * axes - 1 + row - column, place[:, column]),
+        (2 * axes - 1 + row - column, index[:, column]),
         blocks[:, of_slopes[row], of_slopes[column]],
     )
     factor: Floats = cholesky_banded(bands)
