@@ -19,8 +19,8 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
-a curve, it is the root mean square of the difference over that of the reference. Where engines compute a case,
-each has a column of errors, the default one first; computed values are its own. Each case has a negative
+a curve, it is the root mean square of the difference over that of the reference. Where engines compute a
+case, each has a column of errors, the default one first; computed values are its own. Each case has a negative
 control, wrong on purpose by what its last line names, which the tests run and which must fail. *Inside* and
 *outside* stand where a reference was recalled and not read: shown, not counted.
 """
@@ -44,13 +44,8 @@ def report_text(checks: Sequence[Check], pictures: set[str]) -> str:
     """The report as Markdown. pictures : names of the cases that have one"""
     misses = [check for check in checks if check.passed is False]
     judged = [check for check in checks if check.passed is not None]
-    missed = (
-        " Missed: "
-        + "; ".join(f"{c.case}, {c.engine}, {c.quantity}".replace(", ,", ",") for c in misses)
-        + "."
-        if misses
-        else ""
-    )
+    names = [", ".join(filter(None, (c.case, c.engine, c.quantity))) for c in misses]
+    missed = f" Missed: {'; '.join(names)}." if names else ""
     parts = [
         _INTRODUCTION.format(
             exudyn=version("exudyn"), passed=len(judged) - len(misses), count=len(judged), missed=missed
