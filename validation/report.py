@@ -20,7 +20,7 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
 a curve, it is the root mean square of the difference over that of the reference. Where engines compute a
-case, each has a column of errors, the default one first; computed values are its own. Each case has a negative
+case, each has a column of errors, the default one first, whose values are shown. Each case has a negative
 control, wrong on purpose by what its last line names, which the tests run and which must fail. *Inside* and
 *outside* stand where a reference was recalled and not read: shown, not counted.
 """
