@@ -9,6 +9,7 @@ from typing import Any, Literal
 from matplotlib.figure import Figure
 
 from validation.check import Check
+from validation.engines import Engine
 
 PERTURBED = 1.01  # of a parameter in a case's negative control: 1 % off
 
@@ -27,6 +28,7 @@ class Case:
         factor on one parameter of the reference, or, where ``off`` says so, a sign to take something else
     draw : draws the data
     quick : part of a quick run
+    engines : that its motions are computed with, the default one first; none: statics, modes, several at once
     """
 
     name: str
@@ -38,11 +40,12 @@ class Case:
     compare: Callable[[Any, float], list[Check]]
     draw: Callable[[Any, Figure], None]
     quick: bool = True
+    engines: tuple[Engine, ...] = ()
 
-    def checks(self, data: Any, *, negative_control: bool = False) -> list[Check]:
+    def checks(self, data: Any, engine: str = "", *, negative_control: bool = False) -> list[Check]:
         """Compare the data with the reference, or with the negative control's wrong one."""
         found = self.compare(data, PERTURBED if negative_control else 1.0)
-        return [replace(check, case=self.name) for check in found]
+        return [replace(check, case=self.name, engine=engine) for check in found]
 
 
 @dataclass

@@ -15,6 +15,7 @@ class Check:
     """One comparison.
 
     case : name of the case
+    engine : that computed it; empty where none did
     quantity : what is compared
     computed, reference : in ``unit``; of a curve its root mean square, of a range its text
     error : relative to the reference unless ``unit`` or ``reason`` say otherwise
@@ -26,6 +27,7 @@ class Check:
     """
 
     case: str = ""
+    engine: str = ""
     quantity: str
     computed: float | str
     reference: float | str

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 import catenary_fe as cf
 from validation.check import Check
+from validation.engines import engine
 from validation.pictures import label
 
 Floats = NDArray[np.float64]
@@ -66,7 +67,7 @@ def shape() -> cf.Shape:
 def run(speed_kmh: int) -> RunData:
     """One pantograph of the standard at a speed [km/h]; statistics with the default filter."""
     pantograph = cf.library.pantograph("EN 50318:2002")
-    found = cf.simulate(shape(), [pantograph], speed=speed_kmh / 3.6)
+    found = cf.simulate(shape(), [pantograph], speed=speed_kmh / 3.6, method=engine())
     s = found.contact_force_statistics()[0]
     values = (s.mean, s.std, s.statistical_max, s.statistical_min, s.max, s.min)
     rest = (1e3 * found.largest_support_uplift(), 100 * s.contact_loss)

@@ -10,6 +10,7 @@ from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem
 from catenary_fe.layout import Wire
 from catenary_fe.studies.single_wire import run_wire
+from validation.engines import engine
 
 Floats = NDArray[np.float64]
 
@@ -36,6 +37,6 @@ def run(
     spectral_radius: float = 0.9,
     energy: bool = False,
 ) -> WireMotion:
-    """Integrate with the steps that most cases take."""
+    """Integrate with the steps that most cases take, on the engine that the case is computed with."""
     time = TimeSettings(step=step, tolerance=tolerance, spectral_radius=spectral_radius)
-    return run_wire(problem, duration=duration, time=time, interval=interval, energy=energy)
+    return run_wire(problem, duration=duration, time=time, interval=interval, energy=energy, method=engine())

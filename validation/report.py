@@ -19,7 +19,8 @@ Written by `catenary-fe validate` with Exudyn {exudyn}; do not edit.
 
 *Verification* compares with closed forms and independent numerical solutions of the same equations;
 *validation* with published results. An error is relative to the reference unless its line says otherwise; of
-a curve, it is the root mean square of the difference over that of the reference. Each case has a negative
+a curve, it is the root mean square of the difference over that of the reference. Where engines compute a
+case, each has a column of errors, the default one first, whose values are shown. Each case has a negative
 control, wrong on purpose by what its last line names, which the tests run and which must fail. *Inside* and
 *outside* stand where a reference was recalled and not read: shown, not counted.
 """
@@ -43,7 +44,8 @@ def report_text(checks: Sequence[Check], pictures: set[str]) -> str:
     """The report as Markdown. pictures : names of the cases that have one"""
     misses = [check for check in checks if check.passed is False]
     judged = [check for check in checks if check.passed is not None]
-    missed = " Missed: " + "; ".join(f"{c.case}, {c.quantity}" for c in misses) + "." if misses else ""
+    names = [", ".join(filter(None, (c.case, c.engine, c.quantity))) for c in misses]
+    missed = f" Missed: {'; '.join(names)}." if names else ""
     parts = [
         _INTRODUCTION.format(
             exudyn=version("exudyn"), passed=len(judged) - len(misses), count=len(judged), missed=missed
@@ -62,8 +64,13 @@ def report_text(checks: Sequence[Check], pictures: set[str]) -> str:
 
 def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
     lines = [f"### {case.title}\n", f"`{case.name}`: {case.text}\n"]
-    lines += ["| quantity | computed | reference | error | tolerance | |", "|---|---|---|---|---|---|"]
-    lines += [_row(check) for check in checks]
+    errors = [f"error, {engine}" for engine in case.engines] or ["error"]
+    heads = ["quantity", "computed", "reference", *errors, "tolerance", ""]
+    lines += [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    by_quantity: dict[str, list[Check]] = {}
+    for check in checks:
+        by_quantity.setdefault(check.quantity, []).append(check)
+    lines += [_row(rows) for rows in by_quantity.values()]
     sources = list(dict.fromkeys(check.source for check in checks))
     reasons = list(dict.fromkeys(check.reason for check in checks))
     lines += ["", *(f"- Tolerance: {reason}" for reason in reasons)]
@@ -74,11 +81,14 @@ def _section(case: Case, checks: Sequence[Check], picture: bool) -> str:
     return "\n".join(lines)
 
 
-def _row(check: Check) -> str:
-    beside = "" if check.reference == NO_REFERENCE else "**outside**" if check.error else "inside"
-    mark = {True: "passed", False: "**MISSED**", None: beside}[check.passed]
-    values = " | ".join(_text(value, check.unit) for value in (check.computed, check.reference))
-    return f"| {check.quantity} | {values} | {check.error:.2g} | {check.tolerance:.2g} | {mark} |"
+def _row(checks: Sequence[Check]) -> str:
+    """One quantity, as all engines have it; it passes if all of them do."""
+    first, verdicts = checks[0], [check.passed for check in checks]
+    beside = "" if first.reference == NO_REFERENCE else "**outside**" if first.error else "inside"
+    mark = beside if None in verdicts else "passed" if all(verdicts) else "**MISSED**"
+    errors = [f"{check.error:.2g}" for check in checks]
+    values = [_text(value, first.unit) for value in (first.computed, first.reference)]
+    return f"| {' | '.join([first.quantity, *values, *errors, f'{first.tolerance:.2g}', mark])} |"
 
 
 def _text(value: float | str, unit: str) -> str:

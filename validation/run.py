@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from catenary_fe.layout import InputError
 from validation.case import Checks, Outcome
 from validation.cases import CASES
+from validation.engines import ENGINES, on
 
 Progress = Callable[[float], None]
 
@@ -53,9 +54,12 @@ def run_negative_controls(
 
 def run_case(name: str, quick: bool, draw: bool, negative_control: bool) -> Outcome:
     """Run one case, or its negative control."""
-    case = CASES[name]
-    data = _computed(name, quick)
-    checks = case.checks(data, negative_control=negative_control)
+    case, checks = CASES[name], []
+    engines = case.engines or ("",)
+    for engine in engines:
+        data = _computed(name, quick, engine)
+        checks += case.checks(data, engine, negative_control=negative_control)
+    data = _computed(name, quick, engines[0])
     if not draw:
         return Outcome(checks)
     figure = Figure(figsize=(8, 4.5), layout="constrained")
@@ -65,10 +69,11 @@ def run_case(name: str, quick: bool, draw: bool, negative_control: bool) -> Outc
     return Outcome(checks, picture.getvalue())
 
 
-@lru_cache(maxsize=8)
-def _computed(name: str, quick: bool) -> Any:
+@lru_cache(maxsize=16)
+def _computed(name: str, quick: bool, engine: str) -> Any:
     """A case and its negative control share what costs time."""
-    return CASES[name].compute(quick)
+    with on(engine or ENGINES[0]):
+        return CASES[name].compute(quick)
 
 
 def _chosen(names: Sequence[str] | None, quick: bool) -> list[str]:

@@ -27,7 +27,7 @@ from catenary_fe.results.files import write_text
 if TYPE_CHECKING:
     from catenary_fe.views.report.page import PageEntry
 
-_COLUMNS = ("case", "quantity", "computed", "reference", "error", "tolerance", "passed")
+_COLUMNS = ("case", "engine", "quantity", "computed", "reference", "error", "tolerance", "passed")
 TITLE = "Selected problems of wave phenomena in catenaries: all figures, computed"
 PAPER_EPILOG = """\b
 Examples:
@@ -54,7 +54,17 @@ def validate(cases: tuple[str, ...], quick: bool, jobs: int, as_json: bool, quie
         suite.write_report(checks, report)
     rows = [asdict(check) for check in checks]
     if as_json:
-        keys = ("case", "quantity", "computed", "reference", "error", "tolerance", "source", "passed")
+        keys = (
+            "case",
+            "engine",
+            "quantity",
+            "computed",
+            "reference",
+            "error",
+            "tolerance",
+            "source",
+            "passed",
+        )
         print_json([{key: row[key] for key in keys} for row in rows])
     elif not quiet:
         print_table("validation", _COLUMNS, [[row[key] for key in _COLUMNS] for row in rows])

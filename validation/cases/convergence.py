@@ -12,6 +12,7 @@ from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from validation.case import PERTURBED, Case
 from validation.cases.natural_frequencies import exact, frequencies
 from validation.check import Check, compare, rms
+from validation.engines import ENGINES
 from validation.paper_wire import C, Floats, run, wire
 from validation.pictures import label
 
@@ -109,6 +110,7 @@ CASE = Case(
         " of 1 to 0.5 m; and the third shape let go, in steps of 4 to 0.5 ms."
     ),
     off="the errors are taken to a reference 1 % off",
+    engines=ENGINES,
     compute=compute,
     compare=compare_study,
     draw=draw,

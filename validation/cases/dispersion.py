@@ -11,6 +11,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare
+from validation.engines import ENGINES
 from validation.paper_wire import MASS, PAPER, C, Floats, run, wire
 from validation.pictures import REFERENCE, label
 
@@ -94,6 +95,7 @@ CASE = Case(
         " give ω(k)."
     ),
     off="the wire is 1 % heavier",
+    engines=ENGINES,
     compute=compute,
     compare=compare_measured,
     draw=draw,

@@ -11,6 +11,7 @@ from catenary_fe.layout import Wire
 from catenary_fe.studies.single_wire import run_pair
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES, engine
 from validation.paper_wire import MASS, TENSION, C, Floats, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -48,7 +49,7 @@ def compute(quick: bool) -> PairMotion:
         preload=PRELOAD,
     )
     time = TimeSettings(step=2e-4 if quick else 1e-4, tolerance=1e-6)
-    return run_pair(pair, duration=TIME, time=time)
+    return run_pair(pair, duration=TIME, time=time, method=engine())
 
 
 def reference(t: Floats, perturbation: float = 1.0) -> tuple[Floats, Floats, Floats]:
@@ -128,6 +129,7 @@ CASE = Case(
         " damper to its clamp."
     ),
     off="the dropper's tension at rest is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

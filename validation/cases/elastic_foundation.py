@@ -11,6 +11,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import FORCE, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -89,6 +90,7 @@ CASE = Case(
         " must travel on."
     ),
     off="the foundation is 1 % stiffer",
+    engines=ENGINES,
     compute=compute,
     compare=compare_runs,
     draw=draw,

@@ -8,6 +8,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import FORCE, PAPER, STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -78,6 +79,7 @@ CASE = Case(
     title="Elastic pantograph on an infinite string",
     text="F = max(0, 200 N − 1 kN/m · u) at V = 0.725 c for 0.5 s on the paper's wire.",
     off="the force on the undeflected wire is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from validation.case import PERTURBED, Case
 from validation.check import Check
 from validation.en50318 import RunData, draw_run, range_checks, run
+from validation.engines import ENGINES
 
 SPEED, OTHER = 250, 300  # km/h
 
@@ -33,6 +34,7 @@ CASE = Case(
         " 20 Hz. The loss of contact is counted on the unfiltered force."
     ),
     off="the ranges of 300 km/h",
+    engines=ENGINES,
     compute=compute,
     compare=compare_run,
     draw=draw,

@@ -9,6 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import PAPER, STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -68,6 +69,7 @@ CASE = Case(
     title="Varying force at rest on an infinite string",
     text="F = 120 N + 80 N sin Ωt with 6 Hz for 0.5 s at x = 0 of the paper's wire.",
     off="the force is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

@@ -9,6 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import PERTURBED, Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import MASS, PAPER, STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -80,6 +81,7 @@ CASE = Case(
     title="Harmonic moving force on an infinite string",
     text="F = 120 N + 60 N sin Ωt with 5 Hz at V = 0.725 c for 0.5 s on the paper's wire.",
     off="the sign of the F_d term as it is printed in eq. 6",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

@@ -11,6 +11,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from validation.case import PERTURBED, Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import FORCE, PAPER, TENSION, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -114,6 +115,7 @@ CASE = Case(
     title="Bending stiffness of 200 kN m², free and supported",
     text=TEXT,
     off="ANCF with a tension 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_runs,
     draw=draw,

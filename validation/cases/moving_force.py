@@ -10,6 +10,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import FORCE, PAPER, STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -121,6 +122,7 @@ CASE = Case(
     title="Moving force on an infinite string",
     text=TEXT,
     off="the force is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_runs,
     draw=draw,

@@ -11,6 +11,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, graded_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -99,6 +100,7 @@ CASE = Case(
     title="Reflection at a lumped mass and at a spring",
     text="A bell-shaped pulse 2 mm high runs along the paper's wire into a mass or a spring at x = 0.",
     off="mass and spring are 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_runs,
     draw=draw,

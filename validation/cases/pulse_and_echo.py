@@ -9,6 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, even_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import PAPER, TENSION, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -64,6 +65,7 @@ CASE = Case(
     title="A pulse, its two waves and their inverted echoes",
     text="A bell 5 mm high on 60 m of the paper's wire is let go from rest.",
     off="the tension is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

@@ -12,6 +12,7 @@ from catenary_fe.fe.wire_problem import SlidingPantograph, WireMotion, WireProbl
 from catenary_fe.layout import Pantograph, Stage
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import STRING, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -91,6 +92,7 @@ CASE = Case(
         " 10 kN/m, at V = 0.725 c: the moving contact of the runs on a catenary."
     ),
     off="the uplift force is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,

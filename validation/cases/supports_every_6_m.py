@@ -9,6 +9,7 @@ from catenary_fe import theory
 from catenary_fe.fe.wire_problem import WireMotion, WireProblem, graded_nodes
 from validation.case import Case
 from validation.check import Check, compare_curves
+from validation.engines import ENGINES
 from validation.paper_wire import PAPER, TENSION, C, Floats, run, wire
 from validation.pictures import COMPUTED, REFERENCE, label
 
@@ -75,6 +76,7 @@ CASE = Case(
     title="Moving force over rigid supports every 6 m",
     text=TEXT,
     off="the tension is 1 % larger",
+    engines=ENGINES,
     compute=compute,
     compare=compare_motion,
     draw=draw,
