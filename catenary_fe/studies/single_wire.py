@@ -93,17 +93,15 @@ def wire_at_rest(problem: WireProblem) -> Floats:
     Raises InputError for other loads, SolverError if there is no equilibrium.
     """
     system = wire_system(problem)
-    (path,) = system.contact_paths
     load = np.zeros(system.place.size)
     for moving in problem.loads:
         if not isinstance(moving, MovingForce):
             raise InputError(f"{type(moving).__name__}: a wire at rest takes forces known in advance only")
-        e, weights = path.at(moving.start)
-        load[path.index[e : e + 2].ravel()] += moving.contact_force(0.0, 0.0) * weights
+        load += moving.contact_force(0.0, 0.0) * system.row(0, moving.start)
     moved, residual = solve_loaded(system, load, 0 * load)
     if residual is not None:
         raise SolverError("wire at rest: no static equilibrium found; look at forces and stiffnesses")
-    deflection: Floats = (system.reference + moved)[path.index[:, 0]]
+    deflection: Floats = (system.reference + moved)[system.heights]
     return deflection
 
 
@@ -168,24 +166,22 @@ class _WireRun:
 
     def _deflection_at(self, position: float) -> float:
         """[m] of the wire at the start; NaN off the wire."""
-        path = self.system.contact_paths[0]
-        if not path.x[0] <= position <= path.x[-1]:
+        x = self.system.wires[0].x
+        if not x[0] <= position <= x[-1]:
             return float("nan")
-        e, weights = path.at(position)
-        return float(weights @ path.profile[e : e + 2].ravel())
+        return float(self.system.row(0, position) @ self.system.reference)
 
     def _accelerations(self, v: Floats, placed: Sequence[PlacedPantograph]) -> tuple[Floats, Floats]:
         """[m/s²] of all coordinates, and of the pantographs, as they are let go."""
         from scipy.sparse.linalg import spsolve
 
-        system, path = self.system, self.system.contact_paths[0]
+        system = self.system
         force = system.out_of_balance(np.zeros(v.size)) - system.damping() @ v
         heads = np.zeros((max(len(placed), 1), max([1, *(p.body.size for p in placed)])))
         for i, p in enumerate(placed):
             (push,), body = p.forces, p.body
             if np.isfinite(p.wire_heights[0]):
-                e, weights = path.at(p.position)
-                force[path.index[e : e + 2].ravel()] += push * weights
+                force += push * system.row(0, p.position)
             if body.size:
                 row = body.heave(body.strips[0])
                 heads[i, : body.size] = np.linalg.solve(body.mass, p.uplift * body.load - push * row)
