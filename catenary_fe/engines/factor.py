@@ -25,7 +25,7 @@ def factorise(matrix: Any) -> Any:
 
 
 def _entries(matrix: Any, triangle: str) -> tuple[Integers, Integers, Floats]:
-    """CsrRows, columns, values by rows, the columns in the order in which a solve comes to them."""
+    """Rows, columns, values by rows, the columns in the order in which a solve comes to them."""
     coo = matrix.tocoo()
     row, column, value = coo.row.astype(np.int64), coo.col.astype(np.int64), coo.data
     if triangle:

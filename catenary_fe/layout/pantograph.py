@@ -82,8 +82,9 @@ class Panhead(Parameters):
 class Pantograph(Parameters):
     """Lumped masses, head first, pushed up by a constant force on the lowest one.
 
-    The base moves along the track at constant height; its spring is force-free with the head at the nominal
-    contact wire height. Either ``uplift_force`` is given, or a ``mean_force`` that the uplift is set for.
+    The base moves along the track; its spring is force-free with the head at the contact wire's design
+    height, or at the nominal one. Either ``uplift_force`` is given, or a ``mean_force`` that the uplift is
+    set for.
     """
 
     name: Text = "pantograph"

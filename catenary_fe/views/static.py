@@ -55,7 +55,7 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
     design = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
     ax.plot(x, design, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
-    above = "the line between supports" if catenary.changes_height else "nominal"
+    above = "design line" if catenary.changes_height else "nominal"
     style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
     if detail:

@@ -8,7 +8,7 @@ from catenary_fe.engines.arrays import CsrRows, Floats, Integers
 
 
 class ComplianceColumns(NamedTuple):
-    """ComplianceColumns of the inverse of the step's matrix where they are not negligible.
+    """Columns of the inverse of the step's matrix where they are not negligible.
 
     first : shape (columns,), number of the first row kept
     value : shape (columns, width)

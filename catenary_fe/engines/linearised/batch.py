@@ -123,7 +123,7 @@ class Batch:
         return self.records.shortening[slot], self.records.shortened[slot]
 
     def free(self) -> list[int]:
-        """Batch whose run is over."""
+        """Slots whose run is over."""
         return np.flatnonzero(self.pantographs.step >= self.heads.last).tolist()
 
 
