@@ -83,7 +83,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 @options.flag("--elasticity", "Compute the elasticity of the evaluated spans, too, and keep it with the run.")
 @options.criteria("Judge the run by the limits of this system; exit code 1 on a miss.")
 @options.answer()
-def run(
+def run(  # long: an argument an option
     layout: str,
     names: tuple[str, ...],
     positions: tuple[float, ...],

@@ -67,7 +67,7 @@ _FIGURES = (
 @click.option("--scheduler", metavar="ADDRESS", help="Run on the Dask cluster at this address.")
 @options.flag("--retry-failed", "Run failed cases of an earlier start again.")
 @options.answer("Folder for table and pictures.", required=True)
-def sweep(
+def sweep(  # long: an argument an option
     layout: str,
     speeds: tuple[str, ...],
     names: tuple[str, ...],

@@ -38,7 +38,7 @@ class TensionGauge:
 
     def tensions(self, moved: Floats) -> Floats:
         """[N], shape (sections,), at displacements of shape (all,)."""
-        pulls = np.concatenate(self._system.tensions(moved[: self._system.place.size])) * self._length
+        pulls = np.concatenate(self._system.tensions(moved[: self._system.dof.size])) * self._length
         tensions: Floats = np.add.reduceat(pulls, self._sections) / self._whole
         return tensions
 

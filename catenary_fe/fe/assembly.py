@@ -59,7 +59,7 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
     return System(
         axes=axes,
         reference=installation.coordinates(),
-        place=held.place(lines),
+        dof=held.dof(lines),
         first=first,
         cables=Cables(lengths, EA, EI, -tension / EA),
         mass_per_length=per_length,
@@ -103,10 +103,10 @@ def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Inst
     system = assemble(catenary, mesh, replace(installation, balance=none))
     residual = system.gather(system.out_of_balance(none))
     balance = none.copy()
-    moves = np.flatnonzero(system.place >= 0)
-    _, one_each = np.unique(system.place[moves], return_index=True)
+    moves = np.flatnonzero(system.dof >= 0)
+    _, one_each = np.unique(system.dof[moves], return_index=True)
     at = moves[one_each]  # of coordinates that follow another one, the leading one
-    balance[at] = -residual[system.place[at]]
+    balance[at] = -residual[system.dof[at]]
     return replace(installation, balance=balance)
 
 
@@ -212,12 +212,12 @@ class _Restraints:
             pulls_only=False,
         )
 
-    def place(self, lines: Sequence[WireLine]) -> Integers:
+    def dof(self, lines: Sequence[WireLine]) -> Integers:
         """Numbers of the free coordinates in the order of their stations, FIXED for those that are held."""
         station = np.concatenate([np.repeat(line.x, self.width) for line in lines])
         leads = (self.leader == np.arange(self.leader.size)) & ~self.fixed
         free = np.flatnonzero(leads)
         order = free[np.argsort(station[free], kind="stable")]
-        place = np.full(self.leader.size, FIXED, dtype=np.int64)
-        place[order] = np.arange(order.size)
-        return np.where(self.fixed, FIXED, place[self.leader])
+        dof = np.full(self.leader.size, FIXED, dtype=np.int64)
+        dof[order] = np.arange(order.size)
+        return np.where(self.fixed, FIXED, dof[self.leader])

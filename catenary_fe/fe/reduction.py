@@ -128,7 +128,7 @@ class LinearModel:
 def linear_model(system: System) -> LinearModel:
     """The line linearised where it was installed."""
     wires = _reduced_wires(system)
-    whole, gaps = system.place.size, sum(wire.gap_stiffness.size for wire in wires)
+    whole, gaps = system.dof.size, sum(wire.gap_stiffness.size for wire in wires)
     M, K = _assemble(wires, whole)
     droppers = system.droppers
     span = droppers.span(system.reference)

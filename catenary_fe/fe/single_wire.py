@@ -130,7 +130,7 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
     return System(
         axes=AXES,
         reference=reference,
-        place=_places(parts, size),
+        dof=_dof(parts, size),
         first=first,
         cables=Cables(lengths, EA, of_wires("bending_stiffness"), -of_wires("tension") / EA),
         mass_per_length=per_length,
@@ -152,7 +152,7 @@ def _assemble(parts: Sequence[_Part], pair: WirePair | None) -> System:
     )
 
 
-def _places(parts: Sequence[_Part], size: int) -> Integers:
+def _dof(parts: Sequence[_Part], size: int) -> Integers:
     """Numbers of the free coordinates in the order of their stations."""
     moves = np.setdiff1d(np.arange(size), [i for part in parts for i in part.held()])
     station = np.concatenate([np.repeat(part.x, WIDTH) for part in parts])

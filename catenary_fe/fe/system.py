@@ -71,7 +71,7 @@ class System:
 
     axes : 2 in the plane, 3 in space; up is the last one
     reference : shape (all,), points [m] and slopes from which displacements count
-    place : shape (all,), number of the free coordinate, or FIXED; numbered in the order of their stations
+    dof : shape (all,), number of the free coordinate, or FIXED; numbered in the order of their stations
     first : shape (elements,), number of each cable element's first coordinate among all; those of its two
         nodes follow one another
     cables : the elements
@@ -91,7 +91,7 @@ class System:
 
     axes: int
     reference: Floats
-    place: Integers
+    dof: Integers
     first: Integers
     cables: Cables
     mass_per_length: Floats
@@ -115,7 +115,7 @@ class System:
     @property
     def size(self) -> int:
         """Number of free coordinates."""
-        return int(self.place.max(initial=FIXED)) + 1
+        return int(self.dof.max(initial=FIXED)) + 1
 
     @property
     def spatial(self) -> bool:
@@ -140,7 +140,7 @@ class System:
                     profile=self.reference[index],
                     lateral=self.reference[lateral] if self.spatial else np.zeros((wire.x.size, 2)),
                     index=index,
-                    dof=self.place[index],
+                    dof=self.dof[index],
                     supports=wire.supports,
                 )
             )
@@ -155,7 +155,7 @@ class System:
     @cached_property
     def heights(self) -> Integers:
         """Shape (nodes of all wires,): numbers of the heights among all coordinates."""
-        return np.arange(self.axes - 1, self.place.size, 2 * self.axes)
+        return np.arange(self.axes - 1, self.dof.size, 2 * self.axes)
 
     def name(self, coordinate: int) -> str:
         """A coordinate among all in words: wire, place, and what it is."""
@@ -167,7 +167,7 @@ class System:
 
     def spread(self, free: Floats) -> Floats:
         """From values of the free coordinates, shape (..., free), to all, 0 where they cannot move."""
-        spread: Floats = np.where(self.place >= 0, free[..., self.place], 0.0)
+        spread: Floats = np.where(self.dof >= 0, free[..., self.dof], 0.0)
         return spread
 
     def gather(self, values: Floats) -> Floats:
@@ -180,9 +180,9 @@ class System:
         """Sparse, shape (all, free): T with q = T x."""
         from scipy.sparse import csr_matrix
 
-        moves = np.flatnonzero(self.place >= 0)
-        entries = np.ones(moves.size), (moves, self.place[moves])
-        return csr_matrix(entries, shape=(self.place.size, self.size))
+        moves = np.flatnonzero(self.dof >= 0)
+        entries = np.ones(moves.size), (moves, self.dof[moves])
+        return csr_matrix(entries, shape=(self.dof.size, self.size))
 
     def out_of_balance(self, moved: Floats) -> Floats:
         """[N], shape (all,): constant forces less what the line answers to displacements ``moved``."""
@@ -206,7 +206,7 @@ class System:
         e = int(np.clip(np.searchsorted(nodes.x, x, side="right") - 1, 0, nodes.x.size - 2))
         first = 2 * axes * (nodes.first + e) + axis % axes
         length = self.cables.length[np.searchsorted(self.first, 2 * axes * (nodes.first + e))]
-        row = np.zeros(self.place.size)
+        row = np.zeros(self.dof.size)
         share = (x - nodes.x[e]) / (nodes.x[e + 1] - nodes.x[e])
         row[first + axes * np.arange(4)] = hermite(share, length)
         return row
@@ -218,8 +218,8 @@ class System:
         axis : 0 along the track, -1 up, 1 in space to the left
         """
         blocks = self.element_mass * (per_length / self.mass_per_length)[:, None, None]
-        points = np.arange(self.place.size) % (2 * self.axes) == axis % self.axes
-        forces: Floats = scattered([(self.elements(), blocks)], self.place.size) @ points.astype(float)
+        points = np.arange(self.dof.size) % (2 * self.axes) == axis % self.axes
+        forces: Floats = scattered([(self.elements(), blocks)], self.dof.size) @ points.astype(float)
         return forces
 
     def load(self, times: Floats) -> tuple[Floats, Floats]:
@@ -230,7 +230,7 @@ class System:
 
     def varying(self, time: float) -> Floats:
         """[N], shape (all,): sum of the loads that vary in time, at a time [s]."""
-        found = np.zeros(self.place.size)
+        found = np.zeros(self.dof.size)
         for load in self.time_loads:
             found += float(load.signal(np.array([time]))[0]) * load.pattern
         return found
@@ -263,7 +263,7 @@ class System:
         total = self.reference + moved
         parts = [self._wire_part(total), *self._spring_parts(total, taut)]
         linear = self.transformation.T @ self.linear_stiffness @ self.transformation
-        return scattered(parts, self.size, self.place) + linear
+        return scattered(parts, self.size, self.dof) + linear
 
     def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
         index = self.elements()
@@ -271,11 +271,11 @@ class System:
 
     def _spring_parts(self, total: Floats, taut: bool) -> list[tuple[Integers, Floats]]:
         springs = [(s.index(), s.blocks(total, taut=taut)) for s in (self.droppers, self.arms)]
-        return [*springs, (np.arange(self.place.size)[:, None], self.ground_stiffness[:, None, None])]
+        return [*springs, (np.arange(self.dof.size)[:, None], self.ground_stiffness[:, None, None])]
 
     def wire_stiffness(self) -> Any:
         """Stiffness of the wires alone where they were installed, over all coordinates, sparse."""
-        return scattered([self._wire_part(self.reference)], self.place.size)
+        return scattered([self._wire_part(self.reference)], self.dof.size)
 
     def damping(self) -> Any:
         """Damping over all coordinates, without that of droppers, sparse: α M + β K of the wires, springs.
@@ -295,7 +295,7 @@ class System:
         direction = span / np.linalg.norm(span, axis=1)[:, None]
         values = np.hstack([-direction, direction])
         rows = np.repeat(np.arange(len(index)), index.shape[1])
-        shape = (len(index), self.place.size)
+        shape = (len(index), self.dof.size)
         return coo_matrix((values.ravel(), (rows, index.ravel())), shape=shape).tocsr()
 
     def taut_damping(self) -> Any:
@@ -307,7 +307,7 @@ class System:
 
     def spring_stiffness(self) -> Any:
         """Stiffness of all but the wires at rest, droppers taut, over all coordinates, sparse."""
-        return scattered(self._spring_parts(self.reference, True), self.place.size) + self.linear_stiffness
+        return scattered(self._spring_parts(self.reference, True), self.dof.size) + self.linear_stiffness
 
     def between(self, x: Floats, begin: float, end: float) -> System:
         """The same coordinates with the elements, droppers and arms of a part of the line alone.

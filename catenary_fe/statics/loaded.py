@@ -40,7 +40,7 @@ class LoadedLine:
     def load(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
         """[N], shape (all,): upward forces [N] at places [m] along the line."""
         wires = range(len(self.system.contact_paths))
-        load = np.zeros(self.system.place.size)
+        load = np.zeros(self.system.dof.size)
         for x, force in zip(positions, forces, strict=True):
             for wire in wires:
                 load += float(force) / len(wires) * self.system.row(wire, float(x))
@@ -76,7 +76,7 @@ class LoadedLine:
         from scipy.sparse.linalg import splu
 
         system, supports = self.system, self.shape.catenary.support_positions
-        stiffness = system.tangent(np.zeros(system.place.size))
+        stiffness = system.tangent(np.zeros(system.dof.size))
         factor = splu(stiffness.tocsc(), **_NARROW)
         span = np.clip(np.searchsorted(supports, positions, side="right") - 1, 0, supports.size - 2)
         lifts = np.empty(positions.size)
@@ -119,7 +119,7 @@ class _Surroundings:
         x = np.repeat(np.concatenate([wire.x for wire in mesh.wires]), 2 * system.axes)
         # at its left end this part of the line is held, at its right end it moves along as under weights
         around = (x > far[0] + 1e-6) & (x <= far[1] + 1e-6) if far[0] > 0 else x <= far[1] + 1e-6
-        free = system.place[around & (system.place >= 0)]
+        free = system.dof[around & (system.dof >= 0)]
         self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
         beyond = system.across(x, far[1] + 1e-6).tangent(np.zeros(x.size))
         self._stiffness = (stiffness - beyond)[self.part, self.part]
@@ -137,7 +137,7 @@ class _Surroundings:
         """Elements and springs, their coordinates numbered anew."""
         index, springs = inside.elements(), (inside.droppers, inside.arms)
         used = np.unique(np.concatenate([index.ravel(), *(s.index().ravel() for s in springs)]))
-        self.axes, self._reference, self._dof = inside.axes, inside.reference[used], inside.place[used]
+        self.axes, self._reference, self._dof = inside.axes, inside.reference[used], inside.dof[used]
         self._index, self._cables = np.searchsorted(used, index), inside.cables
         self._springs = [
             replace(s, first=np.searchsorted(used, s.first), last=np.searchsorted(used, s.last))

@@ -66,9 +66,9 @@ def force_floor(system: System, load: Floats) -> float:
 
 def free_part(system: System, moved: Floats) -> Floats:
     """Shape (free,), displacements or rates of the free coordinates, from those of all."""
-    moves = system.place >= 0
+    moves = system.dof >= 0
     free = np.zeros(system.size)
-    free[system.place[moves]] = moved[moves]
+    free[system.dof[moves]] = moved[moves]
     return free
 
 
@@ -100,14 +100,14 @@ def static_contact(
     Raises SolverError if there is no equilibrium.
     """
     problem = _StaticContact(system, pantographs)
-    floor = force_floor(system, np.zeros(system.place.size))
+    floor = force_floor(system, np.zeros(system.dof.size))
     x, found = minimise(problem.guess(), problem.residual, problem.tangent, problem.energy, floor)
     if not found:
         residual = problem.residual(x)
         worst = int(np.nan_to_num(np.abs(residual), nan=np.inf).argmax())
         where = "at a pantograph"
         if worst < system.size:
-            where = "at the " + system.name(int(np.flatnonzero(system.place == worst)[0]))
+            where = "at the " + system.name(int(np.flatnonzero(system.dof == worst)[0]))
         raise SolverError(
             f"static contact at the start: no equilibrium found, {np.abs(residual).max():.3g} N are left"
             f" {where}; look there for tensions, stiffnesses or forces that are far from usual values, or"

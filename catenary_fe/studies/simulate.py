@@ -46,7 +46,7 @@ _log = logging.getLogger(__name__)
 
 
 @checked
-def simulate(
+def simulate(  # long by what it documents
     shape: Shape,
     pantographs: Sequence[AnyPantograph],
     *,

@@ -93,7 +93,7 @@ def wire_at_rest(problem: WireProblem) -> Floats:
     Raises InputError for other loads, SolverError if there is no equilibrium.
     """
     system = wire_system(problem)
-    load = np.zeros(system.place.size)
+    load = np.zeros(system.dof.size)
     for moving in problem.loads:
         if not isinstance(moving, MovingForce):
             raise InputError(f"{type(moving).__name__}: a wire at rest takes forces known in advance only")
@@ -110,7 +110,7 @@ def vertical_matrices(problem: WireProblem) -> tuple[Any, Any]:
     system = wire_system(problem)
     (path,) = system.contact_paths
     free = np.sort(path.dof[path.dof >= 0])
-    K, M = system.tangent(np.zeros(system.place.size)), system.free(system.mass)
+    K, M = system.tangent(np.zeros(system.dof.size)), system.free(system.mass)
     return K[free][:, free], M[free][:, free]
 
 
@@ -159,7 +159,7 @@ class _WireRun:
         self.records: Records = self._engine.records
         for j, load in enumerate(loads):
             self._heads.speed[0, j] = load.speed
-        v = np.zeros(system.place.size)
+        v = np.zeros(system.dof.size)
         for problem, wire in zip(problems, system.wires, strict=True):
             v += initial_velocity(problem, wire.first, v.size)
         self._engine.set_in_motion(v, *self._accelerations(v, placed))
@@ -260,7 +260,7 @@ class _Nonlinear:
 
         self._system = system
         engine = NonlinearEngine(system, time)
-        self._run = NonlinearRun(engine, np.zeros(system.place.size), placed, 0.0, steps)
+        self._run = NonlinearRun(engine, np.zeros(system.dof.size), placed, 0.0, steps)
         self.heads, self.records = self._run.state.heads, self._run.records
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
@@ -313,7 +313,7 @@ class _Linearised:
         wires, scheme = self._batch.wires, self._setup.scheme
         found = []
         for values, share in ((wires.q, scheme.b), (wires.v, scheme.g)):
-            spread = np.zeros(self._system.place.size)
+            spread = np.zeros(self._system.dof.size)
             spread[self._index] = (values + share * wires.x)[self._dof, 0]
             found.append(spread)
         return found[0], found[1]

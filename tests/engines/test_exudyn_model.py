@@ -76,7 +76,7 @@ def test_parts_go_by_station_and_name(shape, pushed):
     element = int(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber"))
     begin, end = (wire.x[wire.nodes.index(int(n))] for n in mbs.GetObjectParameter(element, "nodeNumbers"))
     assert begin <= 25.0 <= end
-    assert len(mbs.GetObjectParameter(model.loads, "forceVector")) == system.place.size
+    assert len(mbs.GetObjectParameter(model.loads, "forceVector")) == system.dof.size
     model.release()
 
 

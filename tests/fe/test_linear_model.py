@@ -37,7 +37,7 @@ def test_receptance_of_the_contact_wire(reduced, whole, short_shape, frequency, 
     row[line.dof[e : e + 2].ravel()] = weights
     ours = receptance(reduced.mass, reduced.damping, reduced.stiffness, row, frequency)
     (path,) = whole.contact_paths
-    filled = np.zeros(whole.place.size)
+    filled = np.zeros(whole.dof.size)
     filled[path.index[e : e + 2].ravel()] = weights
     damping = whole.free(whole.damping() + whole.taut_damping())
     parts = whole.free(whole.mass), damping, whole.tangent(0 * filled)

@@ -166,7 +166,7 @@ def test_further_linear_stiffness_and_damping_reach_exudyn(shape, system, moved)
     wire, messenger = system.wires[0], next(w for w in system.wires if not w.contact)
     middle = wire.x[-1] / 2
     nodes = [w.first + int(np.abs(w.x - middle).argmin()) for w in (wire, messenger)]
-    row = np.zeros((1, system.place.size))
+    row = np.zeros((1, system.dof.size))
     row[0, 2 * system.axes * np.array(nodes) + system.axes - 1] = 1.0, -1.0
     between = csr_matrix(row.T @ row)
     other = replace(system, linear_stiffness=5e4 * between, linear_damping=300.0 * between)

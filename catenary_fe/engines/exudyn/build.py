@@ -82,7 +82,7 @@ class ExudynModel:
 
     def name(self, coordinate: int) -> str:
         """A coordinate of the assembled ``mbs`` in words."""
-        known = coordinate < self.system.place.size
+        known = coordinate < self.system.dof.size
         return self.system.name(coordinate) if known else "pantographs"
 
     @property
@@ -306,7 +306,7 @@ def _add_ground_springs(mbs: exu.MainSystem, nodes: list[int], system: System, g
 
 def _add_holds(mbs: exu.MainSystem, nodes: list[int], system: System, ground: int) -> dict[str, int]:
     found = {}
-    for coordinate in np.flatnonzero(system.place == FIXED).tolist():
+    for coordinate in np.flatnonzero(system.dof == FIXED).tolist():
         markers = [ground, _coordinate_marker(mbs, nodes, system, coordinate)]
         hold = eii.ObjectConnectorCoordinate(markerNumbers=markers)
         found[system.name(coordinate)] = int(mbs.AddObject(hold))
@@ -315,8 +315,8 @@ def _add_holds(mbs: exu.MainSystem, nodes: list[int], system: System, ground: in
 
 def _add_clamps(mbs: exu.MainSystem, nodes: list[int], system: System) -> dict[str, int]:
     """Coordinates that move with another one: the first of those that share a number leads."""
-    moves = np.flatnonzero(system.place != FIXED)
-    _, first, group = np.unique(system.place[moves], return_index=True, return_inverse=True)
+    moves = np.flatnonzero(system.dof != FIXED)
+    _, first, group = np.unique(system.dof[moves], return_index=True, return_inverse=True)
     leaders = moves[first][group]
     found = {}
     for leader, follower in zip(leaders.tolist(), moves.tolist(), strict=True):

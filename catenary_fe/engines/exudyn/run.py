@@ -96,11 +96,11 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
         moved, placed = static_contact(
             system, place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
         )
-        q[: system.place.size] = moved
+        q[: system.dof.size] = moved
         for parts, where in zip(own, placed, strict=True):
             q[parts.index(mbs)] = where.heights
     else:
-        q[: system.place.size] = 0.0
+        q[: system.dof.size] = 0.0
     model.load_at(0.0)
     model.lift(uplifts, case.start)
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
@@ -290,7 +290,7 @@ class _EnergyBalance:
     def __init__(self, model: ExudynModel, uplifts: Floats, steps: int, every: int) -> None:
         self.every, self._model, self._contacts = every, model, model.contacts
         self._damping, self._droppers = model.system.damping(), model.system.droppers
-        self._line = model.system.place.size
+        self._line = model.system.dof.size
         self._bodies = [
             (parts, parts.substructure, parts.index(model.mbs), float(uplift))
             for parts, uplift in zip(model.pantographs, uplifts, strict=True)

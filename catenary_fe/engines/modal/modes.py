@@ -130,7 +130,7 @@ def solve_eigen(system: System, count: int) -> EigenPairs:
     Raises SolverError if the iteration fails or the static state is not stable.
     """
     mass, T = system.free(system.mass), system.transformation
-    stiffness = system.tangent(np.zeros(system.place.size))
+    stiffness = system.tangent(np.zeros(system.dof.size))
     squares, vectors = _lowest(stiffness, mass, min(count, system.size - 1))
     if squares[0] <= 0:
         raise SolverError(f"modal analysis: ω² = {squares[0]:g} 1/s² is not positive: the state is unstable")

@@ -50,8 +50,7 @@ def modal_run(
     or mesh, the contact has a damper, or line or head have more than one point of contact.
     """
     number("speed", speed, "m/s", above=0.0)  # no upper bound: studies go beyond the wave speed
-    number("step", step, "s", least=SHORTEST_STEP)
-    _check_fit(shape, modes)
+    _check_fit(shape, modes, step)
     margin = float(np.diff(shape.catenary.support_positions).min()) / 6
     first = margin if start is None else start
     way = shape.catenary.length - margin - first if distance is None else distance
@@ -84,8 +83,9 @@ def modal_run(
     return ModalRun(modes, time, position, force, nominal + sag + lift, nominal + masses.T, coordinates)
 
 
-def _check_fit(shape: Shape, modes: Modes) -> None:
+def _check_fit(shape: Shape, modes: Modes, step: float) -> None:
     """Raises InputError for no modes, those of another line or mesh, and for lines with two contact wires."""
+    number("step", step, "s", least=SHORTEST_STEP)
     if not len(modes):
         raise InputError("modal run: no mode is left below the cut-off; raise it")
     if modes.catenary != shape.catenary or not np.array_equal(modes.contact.x, shape.wires[0].x):

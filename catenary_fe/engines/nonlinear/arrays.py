@@ -27,14 +27,14 @@ class SpringArrays(NamedTuple):
 class Equations(NamedTuple):
     """Equations of motion, see :class:`~catenary_fe.fe.system.System`.
 
-    reference, place : shape (all,)
+    reference, dof : shape (all,)
     force : shape (free,)
     patterns : [N], shape (loads, free), of loads that vary in time
     stiffness, mass, damping : over the free coordinates, the stiffness of linear springs
     """
 
     reference: Floats
-    place: Integers
+    dof: Integers
     elements: Elements
     droppers: SpringArrays
     links: SpringArrays

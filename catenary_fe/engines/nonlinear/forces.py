@@ -51,7 +51,7 @@ def take_droppers(
         for k in range(axes):
             span = total[b + k] - total[a + k]
             square += span * span
-            work += span * (_at(motion.v, system.place[b + k]) - _at(motion.v, system.place[a + k]))
+            work += span * (_at(motion.v, system.dof[b + k]) - _at(motion.v, system.dof[a + k]))
         length = np.sqrt(square)
         spring = droppers.k[i] * (length - droppers.length[i])
         damper = droppers.d[i] * work / length

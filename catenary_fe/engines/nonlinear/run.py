@@ -241,7 +241,7 @@ def _initial_state(
     system: System, moved: Floats, pantographs: Sequence[PlacedPantograph], speed: float
 ) -> InitialState:
     free = np.zeros(system.size)
-    moves = system.place >= 0
-    free[system.place[moves]] = moved[moves]
+    moves = system.dof >= 0
+    free[system.dof[moves]] = moved[moves]
     tensions = system.droppers.tension(system.droppers.span(system.reference + moved))
     return InitialState(free, list(pantographs), tensions, speed, len(system.contact_paths))

@@ -32,7 +32,7 @@ class Parameters:
         idle = np.zeros(more)
         return Equations(
             reference=line.reference,
-            place=line.place,
+            dof=line.dof,
             elements=Elements(
                 line.first,
                 cables.length,

@@ -160,7 +160,7 @@ def _slack(system: Equations) -> Slack:
     return Slack(
         lack=np.zeros(count),
         row=np.zeros(ends.shape),
-        at=system.place[ends],
+        at=system.dof[ends],
         column=np.zeros((count, ROOM)),
         first=np.zeros(count, dtype=np.int64),
         width=np.zeros(count, dtype=np.int64),

@@ -87,8 +87,8 @@ def _move(system: Equations, scheme: Scheme, wires: Wires, motion: Motion) -> No
     for i in range(x.shape[0]):
         motion.q[i] = q[i, 0] + scheme.b * x[i, 0]
         motion.v[i] = v[i, 0] + scheme.g * x[i, 0]
-    for i in range(system.place.size):
-        k = system.place[i]
+    for i in range(system.dof.size):
+        k = system.dof[i]
         motion.total[i] = system.reference[i] + (motion.q[k] if k >= 0 else 0.0)
     motion.inner[:] = 0.0
 
@@ -102,9 +102,9 @@ def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -
     residual[:] = system.force
     for k in range(system.patterns.shape[0]):
         residual += signals[k] * system.patterns[k]
-    for i in range(system.place.size):
-        if system.place[i] >= 0:
-            residual[system.place[i]] += motion.inner[i]
+    for i in range(system.dof.size):
+        if system.dof[i] >= 0:
+            residual[system.dof[i]] += motion.inner[i]
     take_one(system.stiffness, motion.q, residual)
     take_one(system.mass, flat.x, residual)
     take_one(system.damping, motion.v, residual)
