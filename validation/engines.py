@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Literal, cast
 
-Engine = Literal["nonlinear", "linearised"]
-ENGINES: tuple[Engine, ...] = ("nonlinear", "linearised")
+Engine = Literal["nonlinear", "linearised", "exudyn"]
+ENGINES: tuple[Engine, ...] = ("nonlinear", "linearised", "exudyn")
 _engine: ContextVar[str] = ContextVar("engine", default="nonlinear")
 
 

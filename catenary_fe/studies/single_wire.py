@@ -5,7 +5,7 @@ Without weight and from a straight line unless asked otherwise: to be compared w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -33,7 +33,7 @@ from catenary_fe.statics.newton import free_part, solve_loaded
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
 Floats = NDArray[np.float64]
-WireMethod = Literal["nonlinear", "linearised"]
+WireMethod = Literal["nonlinear", "linearised", "exudyn"]
 MOST_STEPS = 10_000_000  # what they record would fill the memory
 _NEAR = 1e-3  # [m] about the expected deflection, where a law is sampled
 
@@ -56,7 +56,7 @@ def run_wire(
     interval : [s] between stored times, a whole number of steps; unset: every step
     energy : store the energy of the wire and its springs too; not with a sliding pantograph, nor linearised
     progress : called with the share done, 0 to 1
-    method : engine, "nonlinear" or "linearised" about the line where the wire is let go
+    method : engine, "nonlinear", "linearised" about the line where the wire is let go, or "exudyn"
 
     Raises InputError for a duration or interval that is no whole number of steps, SolverError if a step does
     not converge.
@@ -153,8 +153,7 @@ class _WireRun:
         self._deflections = [self._deflection_at(load.start) for load in loads]
         placed = [_placed(load, u) for load, u in zip(loads, self._deflections, strict=True)]
         self._before: list[float | None] = [None] * len(loads)
-        self._engine: _Nonlinear | _Linearised
-        self._engine = (_Nonlinear if method == "nonlinear" else _Linearised)(system, placed, steps, time)
+        self._engine: Any = _engine(method)(system, placed, steps, time)
         self._heads: PantographParameters = self._engine.heads
         self.records: Records = self._engine.records
         for j, load in enumerate(loads):
@@ -188,15 +187,14 @@ class _WireRun:
         free = spsolve(system.free(system.mass).tocsc(), system.gather(force))
         return system.spread(np.atleast_1d(free)), heads
 
-    def _step(self, count: int) -> None:
-        """Take one step, the count-th, with the forces of its end."""
+    def _prepare(self, count: int) -> None:
+        """Set the forces of the end of the count-th step."""
         t = count * self._time.step
         for j, load in enumerate(self._loads):
             if isinstance(load, MovingForce):
                 self._heads.law[0, j, :, 1] = load.contact_force(t, 0.0)
             elif isinstance(load, ElasticPantograph):
                 self._sample(j, load, t, count)
-        self._engine.advance()
 
     def _sample(self, j: int, load: ElasticPantograph, t: float, count: int) -> None:
         """Take a law about the deflection that is expected at the step's end, from the last two."""
@@ -214,12 +212,14 @@ class _WireRun:
     ) -> list[WireMotion]:
         """Motion of each wire, stored at every so many steps; loads are on the first one."""
         system, taken = self.system, [self._engine.motion()]
-        for count in range(1, steps + 1):
-            self._step(count)
+
+        def after(count: int) -> None:
             if count % every == 0:
                 taken.append(self._engine.motion())
             if progress and count % 50 == 0:
                 progress(count / steps)
+
+        self._engine.integrate(steps, self._prepare, after)
         counts = np.arange(0, steps + 1, every)
         forces, under, heads = self._at_loads(counts)
         found = []
@@ -252,7 +252,28 @@ class _WireRun:
         return force, under, heads
 
 
-class _Nonlinear:
+def _engine(method: WireMethod) -> Callable[..., Any]:
+    if method == "exudyn":
+        from catenary_fe.engines.exudyn.wire import WireRun
+
+        return WireRun
+    return _Nonlinear if method == "nonlinear" else _Linearised
+
+
+class _Compiled:
+    """Steps one by one."""
+
+    def integrate(self, steps: int, before: Callable[[int], None], after: Callable[[int], None]) -> None:
+        for count in range(1, steps + 1):
+            before(count)
+            self.advance()
+            after(count)
+
+    def advance(self) -> None:
+        raise NotImplementedError
+
+
+class _Nonlinear(_Compiled):
     def __init__(
         self, system: System, placed: Sequence[PlacedPantograph], steps: int, time: TimeSettings
     ) -> None:
@@ -274,7 +295,7 @@ class _Nonlinear:
         return self._system.spread(q), self._system.spread(v)
 
 
-class _Linearised:
+class _Linearised(_Compiled):
     def __init__(
         self, system: System, placed: Sequence[PlacedPantograph], steps: int, time: TimeSettings
     ) -> None:

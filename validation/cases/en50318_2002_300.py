@@ -34,7 +34,7 @@ CASE = Case(
         " 20 Hz. The loss of contact is counted on the unfiltered force."
     ),
     off="the ranges of 250 km/h",
-    engines=ENGINES,
+    engines=ENGINES[:2],
     compute=compute,
     compare=compare_run,
     draw=draw,

@@ -190,26 +190,29 @@ def exudyn_model(shape: Shape, pantographs: Sequence[AnyPantograph] = ()) -> Exu
     """
     check_pantographs(pantographs, least=0)
     system, mbs = shape.system, new_system()
+    model = ExudynModel(mbs=mbs, shape=shape, **add_line(mbs, system))
+    for pantograph in pantographs:
+        model.pantographs.append(add_pantograph(mbs, system, model.contact_wires, model.ground, pantograph))
+    mbs.Assemble()
+    return model
+
+
+def add_line(mbs: exu.MainSystem, system: System) -> dict[str, Any]:
+    """Add all parts of the line; returns them by their names in :class:`ExudynModel`."""
     wires = _add_wires(mbs, system)
     node = mbs.AddNode(eii.NodePointGround())
     ground = int(mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)))
     nodes = [node for wire in wires for node in wire.nodes]
-    model = ExudynModel(
-        mbs=mbs,
-        shape=shape,
-        wires=wires,
-        droppers=_add_springs(mbs, nodes, system.droppers),
-        arms=_add_springs(mbs, nodes, system.arms),
-        supports=_add_ground_springs(mbs, nodes, system, ground),
-        holds=_add_holds(mbs, nodes, system, ground),
-        clamps=_add_clamps(mbs, nodes, system),
-        loads=_add_loads(mbs, nodes, system),
-        ground=ground,
-    )
-    for pantograph in pantographs:
-        model.pantographs.append(add_pantograph(mbs, system, model.contact_wires, ground, pantograph))
-    mbs.Assemble()
-    return model
+    return {
+        "wires": wires,
+        "droppers": _add_springs(mbs, nodes, system.droppers),
+        "arms": _add_springs(mbs, nodes, system.arms),
+        "supports": _add_ground_springs(mbs, nodes, system, ground),
+        "holds": _add_holds(mbs, nodes, system, ground),
+        "clamps": _add_clamps(mbs, nodes, system),
+        "loads": _add_loads(mbs, nodes, system),
+        "ground": ground,
+    }
 
 
 def _position_markers(mbs: exu.MainSystem, what: str, markers: Sequence[int]) -> list[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -92,14 +93,14 @@ def add_pantograph(
     system: System,
     wires: Sequence[WireParts],
     ground: int,
-    pantograph: AnyPantograph,
+    pantograph: Any,
 ) -> PantographParts:
-    """Add a pantograph as it assembles. Its weight is balanced by its frame."""
+    """Add whatever assembles as a pantograph. Its weight is balanced by its frame."""
     assembled, axes = pantograph.assemble(spatial=system.spatial), system.axes
     nominal = system.contact_wire_height * np.eye(3)[axes - 1]
     bodies, coordinates, roll_places = [], [], []
     for body in assembled.bodies:
-        number, node = _add_body(mbs, body, nominal, ground)
+        number, node = _add_body(mbs, body, nominal, axes - 1, ground)
         bodies.append(number)
         coordinates.append((node, 0 if body.inertia is None else _HEAVE))
         if body.inertia is not None:
@@ -156,11 +157,10 @@ def add_own_pantograph(
     return PantographParts(record, None, [], [], [], [], markers, contacts, [int(m) for m in masses])
 
 
-def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, ground: int) -> tuple[int, int]:
+def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, up: int, ground: int) -> tuple[int, int]:
     """Numbers of a point mass that heaves, or of a rigid body that heaves and rolls, and of its node."""
     if body.inertia is None:
         node = mbs.AddNode(eii.Node1D(referenceCoordinates=[0.0]))
-        up = int(nominal.argmax())
         point = eii.ObjectMass1D(
             mass=body.mass, nodeNumber=node, referencePosition=list(nominal), referenceRotation=_TO_UP[up]
         )
