@@ -124,12 +124,12 @@ def _force_balance(run: Run) -> Iterator[Check]:
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         masses, heights = _chain(run, i, pantograph)
-        base = heights[-1] - _base(run, i, pantograph)
-        lowest, duration, grounded = pantograph.stages[-1], float(run.time[-1]), len(pantograph.stages) == 1
-        if grounded:  # strips that share the only spring
-            base = heights.mean(axis=0) - _base(run, i, pantograph)
-        pushed = np.trapezoid(uplift - force - lowest.stiffness * base, dx=run.step)
-        pushed -= lowest.damping * (heights[-1, -1] - heights[-1, 0])
+        lowest, duration = pantograph.stages[-1], float(run.time[-1])
+        shared = len(pantograph.stages) == 1  # by strips, the only spring
+        above = heights.mean(axis=0) if shared else heights[-1]
+        pressed = lowest.stiffness * (above - _base(run, i, pantograph))
+        pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
+        pushed -= lowest.damping * (above[-1] - above[0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
         gained = masses @ velocity
         found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))

@@ -70,8 +70,8 @@ def test_parts_go_by_station_and_name(shape, pushed):
         s.stiffness for s in pushed.stages
     ]
     model.lift([90.0])
-    (load, share), (contact,) = *parts.loads, parts.contacts
-    assert (mbs.GetLoadParameter(load, "load"), share) == (90.0, 1.0)
+    (load, share, base), (contact,) = *parts.loads, parts.contacts
+    assert (mbs.GetLoadParameter(load, "load"), share, base) == (90.0, 1.0, pushed.stages[-1].stiffness)
     model.place([25.0])
     element = int(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber"))
     begin, end = (wire.x[wire.nodes.index(int(n))] for n in mbs.GetObjectParameter(element, "nodeNumbers"))
@@ -85,7 +85,7 @@ def test_strips_on_one_spring_share_the_uplift(shape, pushed):
     model = cf.exudyn_model(shape, [pushed.replace(stages=pushed.stages[:1], head=head)])
     model.lift([90.0])
     (parts,) = model.pantographs
-    assert [model.mbs.GetLoadParameter(load, "load") for load, _ in parts.loads] == [45.0, 45.0]
+    assert [model.mbs.GetLoadParameter(load, "load") for load, *_ in parts.loads] == [45.0, 45.0]
     assert [contact.ahead for contact in parts.contacts] == [0.2, -0.2]
     model.release()
 

@@ -148,15 +148,21 @@ class ExudynModel:
         """
         self.contacts.move_to(positions, speed)
 
-    def lift(self, uplifts: Sequence[float] | Floats, positions: Sequence[float] | Floats) -> None:
-        """Set uplift forces [N], one a pantograph, and heights of the bases at these positions [m].
+    def lift(
+        self, uplifts: Sequence[float] | Floats, positions: Sequence[float] | Floats | None = None
+    ) -> None:
+        """Set uplift forces [N], one a pantograph, and heights of the bases.
+
+        positions : [m] along the track, one a pantograph, where the bases follow the contact wire's design
+            height; unset: they stand at the nominal one
 
         Attached ones have loads of their own.
         """
-        for parts, uplift, x in zip(self.pantographs, uplifts, positions, strict=True):
+        at = [None] * len(self.pantographs) if positions is None else positions
+        for parts, uplift, x in zip(self.pantographs, uplifts, at, strict=True):
             if parts.substructure is None:
                 continue
-            risen = self.system.base_line.under(parts.substructure, float(x))
+            risen = 0.0 if x is None else self.system.base_line.under(parts.substructure, float(x))
             for load, share, base in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", share * float(uplift) + base * risen)
             for contact in parts.contacts:
