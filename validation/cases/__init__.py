@@ -12,6 +12,8 @@ _MODULES = (
     "natural_frequencies",
     "pulse_and_echo",
     "convergence",
+    "convergence_of_runs",
+    "convergence_of_a_line",
     "dropper",
     "moving_force",
     "force_at_rest",
