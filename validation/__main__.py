@@ -17,11 +17,12 @@ def main() -> int:
     chosen = parser.parse_args()
     checks = run_cases(chosen.cases or None, quick=chosen.quick, jobs=chosen.jobs)
     for check in checks:
-        mark = "passed" if check.passed else "MISSED"
-        print(f"{mark} {check.error:10.3e} <= {check.tolerance:8.1e}  {check.case}: {check.quantity}")
+        mark = {True: "passed", False: "MISSED", None: "beside"}[check.passed]
+        name = ", ".join(filter(None, (check.case, check.engine)))
+        print(f"{mark} {check.error:10.3e} <= {check.tolerance:8.1e}  {name}: {check.quantity}")
     if not chosen.cases and not chosen.quick:
         write_report(checks, Path(__file__).parent)
-    return 0 if all(check.passed for check in checks) else 1
+    return 1 if any(check.passed is False for check in checks) else 0
 
 
 if __name__ == "__main__":
