@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,12 @@ def compute(quick: bool) -> WireMotion:
 
 
 def exact(t: Floats, perturbation: float = 1.0) -> theory.SlidingOscillator:
+    return _exact(tuple(t.tolist()), perturbation)
+
+
+@lru_cache(maxsize=4)
+def _exact(t: tuple[float, ...], perturbation: float) -> theory.SlidingOscillator:
+    """At these times [s]; engines share them, and what costs more than their runs."""
     values: dict[str, Any] = {"base_stiffness": BASE, "base_damping": DAMPING}
     return theory.sliding_oscillator(
         STRING,
