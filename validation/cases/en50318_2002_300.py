@@ -31,7 +31,8 @@ CASE = Case(
     text=(
         "Reference model of the standard, one pantograph, spans 5 and 6, causal sixth-order"
         " Butterworth low-pass at"
-        " 20 Hz. The loss of contact is counted on the unfiltered force."
+        " 20 Hz. The loss of contact is counted on the unfiltered force. Without Exudyn, whose runs the tests"
+        " compare with the nonlinear ones on shorter lines: ten spans cost it many times more."
     ),
     off="the ranges of 250 km/h",
     engines=ENGINES[:2],
