@@ -172,7 +172,8 @@ def load_pantographs(
         heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
         heads.load[slot, p, :m] = placed.uplift * body.load
         heads.base_load[slot, p, :m] = body.base_load
-        heads.follows[slot, p], heads.place[slot, p] = body.follows, placed.position
+        heads.follows[slot, p] = body.follows and heads.base_z.any()
+        heads.place[slot, p] = placed.position
         records.masses[slot, p, :m, 0] = placed.heights
     for j, contact in enumerate(start.contacts):
         body = start.pantographs[contact.pantograph].body
