@@ -43,8 +43,10 @@ def stamp(*modules: ModuleType) -> str:
 
 
 def _compiled(function: _Function, keep: bool) -> _Function:
-    # to unpack Python arguments takes longer to compile than most functions that only others call
-    options = {} if keep else {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    # to unpack Python arguments takes longer to compile than most functions that only others call, and to
+    # hand over tuples of twenty arrays takes longer than what many of them do
+    inner = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    options = {} if keep else inner
     made = numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function)
     if keep:
         _keep(made)

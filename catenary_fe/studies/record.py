@@ -7,6 +7,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -162,8 +163,13 @@ def run_key(
         "speed": speed,
         "positions": start.tolist(),
         "settings": {"mesh": asdict(shape.mesh_settings), "time": asdict(time), "store_wire": store_wire},
-        "versions": {name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy", "numba")},
+        "versions": {**_versions(), "numba": version("numba")},
     }
+
+
+@cache
+def _versions() -> dict[str, str]:
+    return {name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy")}
 
 
 def _sha256(text: str) -> str:
@@ -188,7 +194,7 @@ def _provenance(
         "pantographs": records,
         "settings": settings,
         "input_sha256": _sha256(inputs),
-        "versions": json.dumps({name: version(name) for name in ("catenary_fe", "exudyn", "numpy", "scipy")}),
+        "versions": json.dumps(_versions()),
     }
 
 

@@ -32,7 +32,7 @@ from catenary_fe.engines.kernels import (
 from catenary_fe.engines.linearised import arrays, forces, stretch
 from catenary_fe.engines.linearised.arrays import Line, Operator
 from catenary_fe.engines.linearised.forces import record, solve_contacts
-from catenary_fe.engines.linearised.setup import Setup, make_operator
+from catenary_fe.engines.linearised.setup import Setup
 from catenary_fe.engines.linearised.stretch import couple_stretch_eight, couple_stretch_one
 from catenary_fe.engines.recorder import (
     InitialState,
@@ -59,7 +59,7 @@ class Batch:
         n, line = setup.size, setup.line
         j, m = sizes.contacts, sizes.coordinates
         self._setup, self.count = setup, slots
-        self._operator = make_operator(setup, slots)
+        self._operator = setup.for_one_slot if slots == 1 else setup.for_eight_slots
         self.signals = np.zeros((len(setup.line.patterns), sizes.steps + 2)) if signals is None else signals
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
         self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal, setup.base_line)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -77,10 +79,18 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
         model, scheme, _line(model, factor), factor, static, nominal, system.base_line, beta, K, rest
     )
 
+    @cached_property
+    def for_one_slot(self) -> Operator:
+        """The factors in the form that suits one run."""
+        return _operator(self, packed_rows)
 
-def make_operator(setup: Setup, slots: int) -> Operator:
-    """The factors in the form that suits one slot or eight."""
-    form = packed_rows if slots == 1 else csr_rows
+    @cached_property
+    def for_eight_slots(self) -> Operator:
+        """The factors in the form that suits a batch."""
+        return _operator(self, csr_rows)
+
+
+def _operator(setup: Setup, form: Callable[..., Any]) -> Operator:
     return Operator(
         lower=form(setup.factor.L, "lower"),
         upper=form(setup.factor.L.T, "upper"),
