@@ -63,6 +63,16 @@ class Setup:
         """Number of coordinates, filled up to a multiple of four."""
         return int(self.stiffness.shape[0])
 
+    @cached_property
+    def for_one_slot(self) -> Operator:
+        """The factors in the form that suits one run."""
+        return _operator(self, packed_rows)
+
+    @cached_property
+    def for_eight_slots(self) -> Operator:
+        """The factors in the form that suits a batch."""
+        return _operator(self, csr_rows)
+
 
 def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
     """Factorise for a time step; most of the damping matrix follows the system's Rayleigh damping."""
@@ -78,16 +88,6 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
     return Setup(
         model, scheme, _line(model, factor), factor, static, nominal, system.base_line, beta, K, rest
     )
-
-    @cached_property
-    def for_one_slot(self) -> Operator:
-        """The factors in the form that suits one run."""
-        return _operator(self, packed_rows)
-
-    @cached_property
-    def for_eight_slots(self) -> Operator:
-        """The factors in the form that suits a batch."""
-        return _operator(self, csr_rows)
 
 
 def _operator(setup: Setup, form: Callable[..., Any]) -> Operator:
