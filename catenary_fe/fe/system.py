@@ -42,6 +42,7 @@ class WireNodes:
     supports : numbers of its own nodes at the supports
     clamps : likewise where something is fixed to it, its ends among them: there its tension may step
     tension : [N], shape (nodes - 1,), nominal pull along the track in each element
+    section : number of its tension section, from 0
     """
 
     name: str
@@ -51,6 +52,7 @@ class WireNodes:
     supports: Integers
     clamps: Integers
     tension: Floats
+    section: int = 0
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,7 @@ class System:
                     index=index,
                     dof=self.dof[index],
                     supports=wire.supports,
+                    section=wire.section,
                 )
             )
         return tuple(paths)

@@ -5,6 +5,7 @@ from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.line import Line, Overlap, joined, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -31,6 +32,8 @@ __all__ = [
     "Dropper",
     "ElasticPantograph",
     "InputError",
+    "Line",
+    "Overlap",
     "Panhead",
     "Pantograph",
     "PowerSystem",
@@ -44,12 +47,14 @@ __all__ = [
     "Support",
     "Wire",
     "counted",
+    "joined",
     "layout_schema",
     "layout_warnings",
     "library",
     "load_catenary",
     "load_pantograph",
     "pantograph_schema",
+    "read_catenary",
     "recorded_pantograph",
     "target_mean_force",
 ]
