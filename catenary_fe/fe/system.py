@@ -32,6 +32,8 @@ from catenary_fe.fe.spring import FIXED, Springs
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_SAME_PLACE = 1e-3  # [m] of masts
+
 
 @dataclass(frozen=True)
 class WireNodes:
@@ -149,11 +151,22 @@ class System:
             )
         return tuple(paths)
 
+    def served(self, position: float) -> list[int]:
+        """Numbers of the contact wires that a head meets at a place [m] along the track: the lowest ones.
+
+        At one height, as in the middle of an overlap, they are those of the first section there.
+        """
+        paths = self.contact_paths
+        there = [n for n, path in enumerate(paths) if path.meets(position)]
+        heights = {n: float(self.row(n, position) @ self.reference) for n in there}
+        section = paths[min(there, key=heights.__getitem__)].section
+        return [n for n in there if paths[n].section == section]
+
     @property
     def support_positions(self) -> Floats:
         """[m], shape (spans + 1,), along the track."""
-        wire = self.wires[0]
-        return wire.x[wire.supports]
+        x = np.sort(np.concatenate([path.x[path.supports] for path in self.contact_paths]))
+        return x[np.diff(x, prepend=-np.inf) > _SAME_PLACE]
 
     @cached_property
     def heights(self) -> Integers:
