@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         Run,
         criteria_rows,
         load_run,
+        save_catenary,
     )
     from catenary_fe.statics import Shape, find_form, find_heights
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
@@ -75,6 +76,7 @@ _ROOMS = {
         "Run",
         "criteria_rows",
         "load_run",
+        "save_catenary",
     ),
     "studies.simulate": ("simulate",),
     "layout": (
@@ -150,6 +152,7 @@ __all__ = [
     "load_run",
     "modal_run",
     "run_wire",
+    "save_catenary",
     "simulate",
     "solve_modes",
     "solve_statics",

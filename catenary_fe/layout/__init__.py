@@ -19,6 +19,7 @@ from catenary_fe.layout.pantograph import (
 from catenary_fe.layout.parameters import GRAVITY
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import layout_warnings
+from catenary_fe.layout.writer import layout_text
 
 __all__ = [
     "GRAVITY",
@@ -45,6 +46,7 @@ __all__ = [
     "Wire",
     "counted",
     "layout_schema",
+    "layout_text",
     "layout_warnings",
     "library",
     "load_catenary",

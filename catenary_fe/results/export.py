@@ -10,14 +10,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import InputError
-from catenary_fe.results.files import STRAY, atomic_write, cannot_be_written
+from catenary_fe.layout import Catenary, InputError, layout_text
+from catenary_fe.layout.arguments import checked
+from catenary_fe.results.files import STRAY, atomic_write, cannot_be_written, write_text
 from catenary_fe.results.quantities import DECIMALS, OF_HISTORIES, decimals_of
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 
 Floats = NDArray[np.float64]
 Table = dict[str, Floats]
+
+
+@checked
+def save_catenary(catenary: Catenary, path: str | Path, *, comment: str = "") -> Path:
+    """Write a catenary as a layout file, which :func:`load_catenary` reads as an equal one; returns its path.
+
+    comment : lines to stand above it
+
+    Raises InputError for a path that cannot be written, and for what the file format cannot say.
+    """
+    write_text(path, layout_text(catenary, comment=comment))
+    return Path(path)
 
 
 def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
