@@ -93,7 +93,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
     if catenary.stitch_wire:
         stitch = catenary.stitch_wire
         clamps += 2 * len(catenary.stitched_supports) * stitch.clamp_mass
-        line += len(catenary.stitched_supports) * stitch.mass_per_length * stitch.length / catenary.length
+        line += stitch.mass_per_length * float(catenary.stitch_wire_lengths.sum()) / catenary.length
     return {
         "name": catenary.name,
         "source": catenary.source,

@@ -200,7 +200,7 @@ def _support_row(shape: Shape, i: int, pulls: Floats) -> SupportRow:
         contact_wire_tension_kN=catenary.contact_wire.tension / 1e3,
         messenger_wire_tension_kN=float(pulls[min(node, pulls.size - 1)]) / 1e3,
         stitch_wire_tension_kN=stitch.tension / 1e3 if stitch else None,
-        stitch_wire_length_m=stitch.length if stitch else None,
+        stitch_wire_length_m=float(catenary.stitch_wire_lengths[i]) if stitch else None,
     )
 
 

@@ -213,8 +213,8 @@ def sketched_lines(catenary: Catenary, part: Stretch) -> list[Line]:
     messenger = along, np.interp(along, supports, heights) - sag
     points = [(x[order], z[order])] * contact_wires + [messenger]
     if catenary.stitch_wire:
-        for middle in supports[list(catenary.stitched_supports)]:
-            ends = middle + catenary.stitch_wire.length / 2 * np.array([-1.0, 1.0])
+        for support in catenary.stitched_supports:
+            ends = supports[support] + catenary.stitch_wire_lengths[support] / 2 * np.array([-1.0, 1.0])
             points.append((ends, np.interp(ends, *messenger)))
     lines = []
     for (at, high), name in zip(points, _names(catenary), strict=True):
@@ -237,7 +237,8 @@ def upper_wires(catenary: Catenary, shape: Shape | None) -> NDArray[np.int64]:
     wires = np.full(at.size, len(catenary.contact_wire_offsets))
     if catenary.stitch_wire:
         for i, support in enumerate(catenary.stitched_supports, start=1):
-            near = np.abs(catenary.support_positions[support] - at) < catenary.stitch_wire.length / 2
+            half = catenary.stitch_wire_lengths[support] / 2
+            near = np.abs(catenary.support_positions[support] - at) < half
             wires[near] = len(catenary.contact_wire_offsets) + i
     return wires
 

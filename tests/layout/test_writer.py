@@ -64,7 +64,7 @@ def test_supports_without_an_arm():
     supports[6] = supports[6].replace(steady_arm=None, stagger=0.0)
     record = layout_record(line.replace(supports=supports))
     assert "steady_arm" not in record["support"]
-    assert len(record["supports"]) == 20
+    assert len(record["supports"]) == 21
     layout_text(line.replace(supports=supports))
 
 
