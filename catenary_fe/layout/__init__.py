@@ -1,6 +1,7 @@
 """What an engineer writes down: wires, droppers, supports, spans, pantographs; files and the library."""
 
 from catenary_fe.layout import library
+from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
@@ -44,7 +45,9 @@ __all__ = [
     "StitchWire",
     "Support",
     "Wire",
+    "build_line",
     "counted",
+    "dropper_positions",
     "layout_schema",
     "layout_text",
     "layout_warnings",
