@@ -6,6 +6,7 @@ from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -46,6 +47,7 @@ __all__ = [
     "Support",
     "Wire",
     "build_line",
+    "catenary_from_tables",
     "counted",
     "dropper_positions",
     "layout_schema",

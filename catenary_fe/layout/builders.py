@@ -7,6 +7,7 @@ not say is assumed, and the line's `source` says so.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, get_args
 
@@ -93,7 +94,8 @@ def _french(length: float) -> Floats:
     if gaps < 0 or middle > most + 1e-9:
         raise InputError(
             f"span of {length:g} m: the French rule leaves {middle - step:.4g} or {middle:.4g} m in the"
-            f" middle: must be {least:g} to {most:g} m; spans of these lines are multiples of 4.5 m, from 13.5 m"
+            f" middle: must be {least:g} to {most:g} m; spans of these lines are multiples of 4.5 m, from"
+            " 13.5 m"
         )
     left = first + step * np.arange(gaps - gaps // 2 + 1)
     return np.concatenate([left, length - first - step * np.arange(gaps // 2, -1, -1)])
@@ -231,3 +233,61 @@ def _stitched(kind: Line, supports: Sequence[Support], lengths: Sequence[float])
         for support, length in zip(supports[1:-1], inner, strict=True)
     ]
     return (supports[0], *changed, supports[-1])
+
+
+@dataclass(frozen=True)
+class LinePattern:
+    """What tables of masts and droppers do not hold.
+
+    line : its wires, damping, heights
+    support, dropper : what all have in common
+    sag : pre-sag as a share of the span
+    kind : type of the library, whose rules place droppers and stitch wires; None: of a base layout
+    """
+
+    line: Catenary
+    support: Support
+    dropper: Dropper
+    sag: float
+    kind: Line | None = None
+
+    @classmethod
+    def of(cls, base: Any) -> LinePattern:
+        """Raises InputError for a base whose droppers or supports differ in what the tables do not hold."""
+        kind = None
+        if isinstance(base, str):
+            kind = library.line(base)
+            base = build_line(kind.replace(dropper_rule="Re"), [60.0] * 3)  # of which the wires are taken
+        if not isinstance(base, Catenary):
+            raise InputError(f"base = {base!r:.60}: must be a Catenary or the name of a line in the library")
+        bare = {"stagger": 0.0, "messenger_stagger": 0.0, "contact_wire_height": None, "system_height": None}
+        bare |= {"stitch_wire": True, "stitch_wire_length": None}
+        inner = base.supports[1:-1] or base.supports
+        support = _one(base, "supports", [s.replace(**bare) for s in inner])
+        plain = {"position": 0.0, "length": None, "height_offset": None, "contact_wire": None}
+        dropper = _one(base, "droppers", [d.replace(**plain) for d in base.droppers] or [Dropper(position=0)])
+        sag = _one(base, "pre-sags", [round(span.pre_sag / span.length, 9) for span in base.spans])
+        return cls(base, support, dropper, sag, kind)
+
+    def span(self, length: float) -> Span:
+        """A span without a table of droppers. Raises InputError where no rule says where they are."""
+        if self.kind and self.kind.dropper_rule:
+            return rule_span(self.kind, length)
+        alike = [s for s in self.line.spans if abs(s.length - length) < 1e-3] if self.kind is None else []
+        if not alike:
+            raise InputError(
+                f"span of {length:g} m: '{self.line.name}' has no rule for its droppers"
+                + ("" if self.kind else ", nor a span of this length")
+                + "; give a table of droppers"
+            )
+        droppers = tuple(d.replace(length=None) for d in alike[0].droppers)
+        return alike[0].replace(length=length, droppers=droppers, curve_radius=None)
+
+
+def _one(base: Catenary, what: str, parts: Sequence[Any]) -> Any:
+    if any(part != parts[0] for part in parts):
+        raise InputError(
+            f"'{base.name}' as a base of tables: its {what} are of several kinds, and the tables do not say"
+            " which is where; take a base with one kind"
+        )
+    return parts[0]
