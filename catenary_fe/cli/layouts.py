@@ -104,7 +104,7 @@ def build(
 
     The source of the layout says what is from where, and what is assumed.
     """
-    named = {"name": name} if name else {}
+    named: dict[str, Any] = {"name": name} if name else {}
     made = build_line(line, _lengths(spans), staggers=stagger, curve_radii=curve_radius, **named)
     words = [f"--{n}={v}" for n, v in (("stagger", stagger), ("curve-radius", curve_radius)) if v is not None]
     _write(made, output, ["build", line, "--spans", spans, *words], as_json, quiet, {})
