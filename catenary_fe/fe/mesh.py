@@ -92,6 +92,7 @@ class Mesh:
     lower, upper : where the droppers are clamped, below on a contact wire, above on the messenger or a
         stitch wire
     stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
+    messengers : how many messenger wires there are: one a tension section
     """
 
     wires: tuple[WireMesh, ...]
@@ -99,6 +100,7 @@ class Mesh:
     lower: Clamps
     upper: Clamps
     stitch_ends: Integers
+    messengers: int = 1
 
     @property
     def contact(self) -> WireMesh:
@@ -113,7 +115,7 @@ class Mesh:
     @property
     def first_stitch(self) -> int:
         """Number of the first stitch wire among all wires, whether there is one or not."""
-        return self.contact_wires + 1
+        return self.contact_wires + self.messengers
 
     @property
     def first_nodes(self) -> Integers:
@@ -124,7 +126,7 @@ class Mesh:
         """A wire in words, by its number."""
         if number < self.contact_wires:
             return "contact wire"
-        return "messenger wire" if number == self.contact_wires else "stitch wire"
+        return "messenger wire" if number < self.first_stitch else "stitch wire"
 
     def nodes(self, clamps: Clamps) -> Integers:
         """Shape (droppers,): numbers of clamped nodes among the nodes of all wires."""

@@ -7,6 +7,7 @@ from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
+from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -34,6 +35,8 @@ __all__ = [
     "Dropper",
     "ElasticPantograph",
     "InputError",
+    "Line",
+    "Overlap",
     "Panhead",
     "Pantograph",
     "PowerSystem",
@@ -50,6 +53,7 @@ __all__ = [
     "catenary_from_tables",
     "counted",
     "dropper_positions",
+    "join_sections",
     "layout_schema",
     "layout_text",
     "layout_warnings",
@@ -57,6 +61,7 @@ __all__ = [
     "load_catenary",
     "load_pantograph",
     "pantograph_schema",
+    "read_catenary",
     "recorded_pantograph",
     "target_mean_force",
 ]

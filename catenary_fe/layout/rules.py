@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 def catenary_faults(catenary: Catenary) -> list[str]:
     """One line for each fault of a catenary whose parts are sound by themselves."""
-    return [*_faults_of_line(catenary), *_faults_of_droppers(catenary), *_faults_of_stitch_wires(catenary)]
+    return [*line_faults(catenary), *_faults_of_droppers(catenary), *_faults_of_stitch_wires(catenary)]
+
+
+def line_faults(catenary: Catenary) -> list[str]:
+    """One line for each fault of evaluated spans, plane and supports."""
+    return list(_faults_of_line(catenary))
 
 
 def _faults_of_line(catenary: Catenary) -> Iterator[str]:
@@ -75,6 +80,8 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
 
 def dropper_names(catenary: Catenary) -> list[str]:
     """Shape (droppers,): each dropper's name in errors."""
+    if sections := getattr(catenary, "sections", ()):
+        return [f"section {n}: {name}" for n, s in enumerate(sections, start=1) for name in dropper_names(s)]
     return [
         f"span {i}: dropper {number} at {dropper.position:g} m"
         for i, span in enumerate(catenary.spans, start=1)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout import AnyPantograph, Catenary, Line
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 
@@ -328,8 +328,11 @@ def _start_transient(run: Run) -> Iterator[Check]:
     numbers = sorted(run.evaluated_spans)
     if first > 1 and catenary.support_positions[first - 2] >= started and len(numbers) == 1:
         numbers = [first - 1, *numbers]
+    beside = _beside_overlaps(catenary)
     equal = [
-        (a, b) for a, b in pairwise(numbers) if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1]
+        (a, b)
+        for a, b in pairwise(numbers)
+        if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1] and not {a, b} & beside
     ]
     if not equal:
         return
@@ -344,6 +347,18 @@ def _start_transient(run: Run) -> Iterator[Check]:
             found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
     value, text = _worst(found)
     yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
+
+
+def _beside_overlaps(catenary: Catenary) -> set[int]:
+    """Numbers of the spans in and next to overlaps, where equal spans need not have equal forces."""
+    zones = catenary.common_zones if isinstance(catenary, Line) else ()
+    ends = catenary.support_positions
+    return {
+        n
+        for begin, end in zones
+        for n in range(1, ends.size)
+        if ends[n] > begin - catenary.spans[n - 1].length and ends[n - 1] < end + catenary.spans[n - 1].length
+    }
 
 
 def _slack_droppers(run: Run) -> Iterator[Check]:
