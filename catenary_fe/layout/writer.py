@@ -6,6 +6,7 @@ import json
 import tomllib
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
@@ -16,6 +17,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.files import LayoutFile, SteadyArmEntry
+from catenary_fe.layout.line import Line, Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
 from catenary_fe.layout.variation import unit_of
@@ -29,7 +31,7 @@ def layout_text(catenary: Catenary, *, comment: str = "") -> str:
     """The text of a layout file that describes a catenary; read again, it is equal to it.
 
     Equal spans are counted, values that most droppers or supports share are written once, wires of the
-    library by their name.
+    library by their name. Overlaps of several sections are written span by span.
 
     comment : lines to stand above it
 
@@ -41,34 +43,92 @@ def layout_text(catenary: Catenary, *, comment: str = "") -> str:
         again = LayoutFile.model_validate(tomllib.loads(text)).catenary()
     except (ValidationError, ValueError) as error:
         raise InputError(f"{catenary.name}: no layout file can say this: {error}") from None
-    if again != catenary:
-        names = [n for n in Catenary.model_fields if getattr(again, n) != getattr(catenary, n)]
+    wanted = _as_written(catenary)
+    if again != wanted:
+        fields = type(wanted).model_fields
+        names = [n for n in fields if getattr(again, n, None) != getattr(wanted, n)]
         raise InputError(
             f"{catenary.name}: no layout file can say its {', '.join(names)}; give values that can be written"
         )
     return text
 
 
+def _as_written(catenary: Catenary) -> Catenary:
+    """Itself; a line of several sections as a file has it: of one name, its overlaps span by span."""
+    if not isinstance(catenary, Line):
+        return catenary
+    same = {"name": catenary.name, "source": catenary.source, "evaluated_spans": None}
+    overlaps = [Overlap(spans=o.spans, kind=o.kind, as_written=True) for o in catenary.overlaps]
+    return catenary.replace(sections=[s.replace(**same) for s in catenary.sections], overlaps=overlaps)
+
+
 def layout_record(catenary: Catenary) -> _Record:
     """Keys and values of the layout file."""
-    made = {"supports", "stagger", "curve_radius"}
+    sections = catenary.sections if isinstance(catenary, Line) else (catenary,)
+    shared = _Shared.of(sections)
+    first, *further = (_section(section, shared) for section in sections)
     found: _Record = {"name": catenary.name}
     for name in LayoutFile.model_fields:
-        if name in Catenary.model_fields and name not in made:
-            value, default = getattr(catenary, name), Catenary.model_fields[name].get_default()
+        if name in Catenary.model_fields and name not in _MADE:
+            owner = catenary if name in ("source", "evaluated_spans") else sections[0]
+            value, default = getattr(owner, name), Catenary.model_fields[name].get_default()
             if value is not None and (value != default or name in ("contact_wire_height", "system_height")):
                 found[name] = _wire(value) if isinstance(value, Wire) else _plain(value)
-    radii = {span.curve_radius for span in catenary.spans}
-    if len(radii) == 1 and None not in radii:
-        found["curve_radius"] = radii.pop()
-    common = _shared([_fields(dropper, without=("position",)) for dropper in catenary.droppers], Dropper)
-    found |= {"dropper": common} if common else {}
-    found |= _supports(catenary)
-    found["span"] = [
-        ({"count": n} if (n := len(list(same))) > 1 else {}) | _span(span, common, found.get("curve_radius"))
-        for span, same in groupby(catenary.spans)
-    ]
+    found |= {"dropper": shared.dropper} if shared.dropper else {}
+    found |= {"support": shared.support} if shared.support else {}
+    found |= {name: value for name, value in first.items() if value or name == "span"}
+    if isinstance(catenary, Line):
+        entries = zip(sections[1:], further, catenary.overlaps, strict=True)
+        found["further_sections"] = [_further(sections[0], *entry) for entry in entries]
     return found
+
+
+def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap) -> _Record:
+    """An entry of a further section: its wires where they are others, its supports and spans."""
+    wires = {
+        name: _wire(getattr(section, name))
+        for name in ("contact_wire", "messenger_wire", "stitch_wire")
+        if getattr(section, name) not in (None, getattr(first, name))
+    }
+    head = {"overlap": {"spans": overlap.spans, "kind": overlap.kind, "as_written": True}}
+    return wires | {"stagger": own.get("stagger", 0.0)} | head | own
+
+
+_MADE = {"supports", "stagger", "curve_radius"}
+_BLOCKS = {"supports", "span", "further_sections", "equipment"}  # lists that are written as [[tables]]
+
+
+@dataclass(frozen=True)
+class _Shared:
+    """Tables ``dropper`` and ``support`` of what most have in common, and the steady arm of all supports."""
+
+    dropper: _Record
+    support: _Record
+    arm: SteadyArm | None
+
+    @classmethod
+    def of(cls, sections: Sequence[Catenary]) -> _Shared:
+        droppers = [d for section in sections for d in section.droppers]
+        supports = [s for section in sections for s in section.supports]
+        arms = [support.steady_arm for support in supports]
+        arm = Counter(arms).most_common(1)[0][0] if None not in arms else None
+        if arm and any(_own_arm(each, arm) is None for each in arms):
+            arm = None  # a value of some cannot be taken back in others
+        support = _shared([_fields(s, without=("steady_arm", "stagger")) for s in supports], Support)
+        return cls(
+            _shared([_fields(d, without=("position",)) for d in droppers], Dropper),
+            support | ({"steady_arm": _plain(arm)} if arm else {}),
+            arm,
+        )
+
+
+def _section(section: Catenary, shared: _Shared) -> _Record:
+    """``stagger``, ``supports`` and ``span`` of one section."""
+    spans = [
+        ({"count": n} if (n := len(list(same))) > 1 else {}) | _span(span, shared.dropper)
+        for span, same in groupby(section.spans)
+    ]
+    return _supports(section, shared) | {"span": spans}
 
 
 def _default(model: type[Parameters], name: str) -> Any:
@@ -122,34 +182,24 @@ def _own(part: Parameters, common: _Record, without: Sequence[str] = ()) -> _Rec
     return {name: value for name, value in found.items() if value is not None}
 
 
-def _span(span: Span, common: _Record, radius: float | None) -> _Record:
-    own = _own(span, {"curve_radius": radius}, without=("droppers",))
+def _span(span: Span, common: _Record) -> _Record:
     droppers = [{"position": d.position} | _own(d, common, without=("position",)) for d in span.droppers]
+    own = _own(span, {}, without=("droppers",))
     return own | {"droppers": [d if len(d) > 1 else d["position"] for d in droppers]}
 
 
-def _supports(catenary: Catenary) -> _Record:
-    """``stagger``, ``support`` and ``supports``."""
-    supports, found = catenary.supports, {}
-    arms = [support.steady_arm for support in supports]
-    common = _shared([_fields(s, without=("steady_arm",)) for s in supports], Support)
-    sides = [s.stagger * (-1) ** i + 0.0 for i, s in enumerate(supports)]
+def _supports(section: Catenary, shared: _Shared) -> _Record:
+    """``stagger`` and ``supports``."""
+    sides = [s.stagger * (-1) ** i + 0.0 for i, s in enumerate(section.supports)]
     stagger, count = Counter(sides).most_common(1)[0]
-    if stagger and count > sum(s.stagger == common.get("stagger", 0.0) for s in supports):
-        found["stagger"] = stagger
-        common.pop("stagger", None)
-    usual = Counter(arms).most_common(1)[0][0] if None not in arms else None
-    own_arms = [_own_arm(arm, usual) for arm in arms]
-    if usual and None in own_arms:  # a value of some cannot be taken back in others
-        usual, own_arms = None, [_own_arm(arm, None) for arm in arms]
-    table = common | ({"steady_arm": _plain(usual)} if usual else {})
-    found |= {"support": table} if table else {}
+    stagger = stagger if count > sum(s.stagger == 0 for s in section.supports) else 0.0
     entries = []
-    for i, (support, arm) in enumerate(zip(supports, own_arms, strict=True)):
-        beside = common | ({"stagger": stagger * (-1) ** i} if "stagger" in found else {})
+    for i, support in enumerate(section.supports):
+        beside = shared.support | {"stagger": stagger * (-1) ** i}
+        arm = _own_arm(support.steady_arm, shared.arm)
         own = _own(support, beside, without=("steady_arm",)) | ({"steady_arm": arm} if arm else {})
         entries += [{"at": i + 1} | own] if own else []
-    return found | ({"supports": entries} if entries else {})
+    return {"stagger": stagger, "supports": entries}
 
 
 def _own_arm(arm: SteadyArm | None, usual: SteadyArm | None) -> _Record | None:
@@ -167,17 +217,18 @@ def _own_arm(arm: SteadyArm | None, usual: SteadyArm | None) -> _Record | None:
     return None
 
 
-def _toml(record: _Record, place: str = "") -> str:
-    """Single values first, then tables, then lists of tables."""
+def _toml(record: _Record, place: str = "", inline: bool = False) -> str:
+    """Single values first, then tables, then lists of tables.
+
+    inline : whether tables are written in one line, in an entry of a list
+    """
     lines, below = [], ""
     for name, value in record.items():
         path = f"{place}.{name}" if place else name
-        if isinstance(value, dict):
+        if isinstance(value, dict) and not inline:
             below += f"\n[{path}]\n" + _toml(value, path)
-        elif isinstance(value, list) and value and not place and all(isinstance(v, dict) for v in value):
-            for each in value:
-                rows = (_line(key, inner, f"{path}.{key}") for key, inner in each.items())
-                below += f"\n[[{path}]]\n" + "".join(rows)
+        elif name in _BLOCKS and value:
+            below += "".join(f"\n[[{path}]]\n" + _toml(each, path, inline=True) for each in value)
         else:
             lines.append(_line(name, value, path))
     return "".join(lines) + below

@@ -68,6 +68,20 @@ def test_supports_without_an_arm():
     layout_text(line.replace(supports=supports))
 
 
+@pytest.mark.parametrize("stagger", [0.2, 0.0])
+def test_a_line_of_several_sections(stagger, tmp_path):
+    """Overlaps come back span by span."""
+    line = cf.build_line("Re 250", [60.0] * 8, staggers=stagger, steady_arm=cf.SteadyArm(stiffness=200.0))
+    other = line.replace(spans=line.spans + line.spans[:2], supports=line.supports + line.supports[:2])
+    other = other.replace(messenger_wire=line.messenger_wire.replace(tension=14e3))
+    joined = cf.layout.join_sections([line, other], [cf.layout.Overlap(lift=0.3)], evaluated_spans=(4, 5))
+    again = cf.load_catenary(cf.save_catenary(joined, tmp_path / "line.toml"))
+    assert again.sections == joined.sections and again.evaluated_spans == (4, 5)
+    assert again.overlaps == (cf.layout.Overlap(as_written=True),)
+    assert cf.load_catenary(cf.save_catenary(again, tmp_path / "again.toml")) == again
+    assert (tmp_path / "line.toml").read_bytes() == (tmp_path / "again.toml").read_bytes()
+
+
 def test_files_that_cannot_be_written(tmp_path):
     with pytest.raises(cf.InputError, match="cannot be written"):
         cf.save_catenary(mixed(), tmp_path / "absent" / "line.toml")
