@@ -19,6 +19,7 @@ from catenary_fe.layout.arguments import checked, number, numbers, one_of
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.library import DropperRule, Line
+from catenary_fe.layout.line import Line as SectionedLine
 from catenary_fe.layout.parameters import shorten
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support
 
@@ -174,6 +175,7 @@ def build_line(
     supports = [
         common.replace(stagger=float(y), contact_wire_height=z) for y, z in zip(at, heights, strict=True)
     ]
+    stitched = _stitched(kind, supports, lengths.tolist())
     given = {
         "name": kind.name,
         "source": f"{kind.source}; built by its rule. {ASSUMED}",
@@ -185,9 +187,9 @@ def build_line(
         contact_wire=kind.contact_wire,
         messenger_wire=kind.messenger_wire,
         contact_wire_spacing=kind.contact_wire_spacing,
-        stitch_wire=_stitch_wire(kind),
+        stitch_wire=_stitch_wire(kind) if any(s.stitch_wire for s in stitched[1:-1]) else None,
         spans=tuple(rule_span(kind, length, r) for length, r in zip(lengths.tolist(), radii, strict=True)),
-        supports=_stitched(kind, supports, lengths.tolist()),
+        supports=stitched if any(s.stitch_wire for s in stitched[1:-1]) else tuple(supports),
         **(given | others),
     )
 
@@ -228,11 +230,11 @@ def _stitched(kind: Line, supports: Sequence[Support], lengths: Sequence[float])
     if usual is None or kind.dropper_rule != "Re":
         return tuple(supports)
     inner = [stitch_wire_length(a, b, usual) for a, b in pairwise(lengths)]
-    changed = [
+    each = [*inner[:1], *inner, *inner[-1:]] or [usual] * 2  # the ends, which have none, as the next ones
+    return tuple(
         support.replace(stitch_wire=length > 0, stitch_wire_length=length if 0 < length < usual else None)
-        for support, length in zip(supports[1:-1], inner, strict=True)
-    ]
-    return (supports[0], *changed, supports[-1])
+        for support, length in zip(supports, each, strict=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -260,14 +262,17 @@ class LinePattern:
             base = build_line(kind.replace(dropper_rule="Re"), [60.0] * 3)  # of which the wires are taken
         if not isinstance(base, Catenary):
             raise InputError(f"base = {base!r:.60}: must be a Catenary or the name of a line in the library")
+        sections = base.sections if isinstance(base, SectionedLine) else (base,)
+        wires = [(s.contact_wire, s.messenger_wire, s.stitch_wire, s.system_height) for s in sections]
+        _one(base, "sections", wires)
         bare = {"stagger": 0.0, "messenger_stagger": 0.0, "contact_wire_height": None, "system_height": None}
         bare |= {"stitch_wire": True, "stitch_wire_length": None}
-        inner = base.supports[1:-1] or base.supports
+        inner = [s for section in sections for s in section.supports[1:-1] or section.supports]
         support = _one(base, "supports", [s.replace(**bare) for s in inner])
         plain = {"position": 0.0, "length": None, "height_offset": None, "contact_wire": None}
         dropper = _one(base, "droppers", [d.replace(**plain) for d in base.droppers] or [Dropper(position=0)])
         sag = _one(base, "pre-sags", [round(span.pre_sag / span.length, 9) for span in base.spans])
-        return cls(base, support, dropper, sag, kind)
+        return cls(sections[0], support, dropper, sag, kind)
 
     def span(self, length: float) -> Span:
         """A span without a table of droppers. Raises InputError where no rule says where they are."""

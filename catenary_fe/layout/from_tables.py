@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -13,13 +13,14 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.builders import LinePattern, stitch_wire_length
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support
-from catenary_fe.layout.tables import ROUNDED, Column, Table, one_wire, read_table
+from catenary_fe.layout.tables import ROUNDED, Column, Table, by_section, one_wire, read_table
 
 _LENGTH, _SIZE, _RESULT = Column("length"), Column("length", least=0.0), Column("result")
 _WHOLE = Column("whole")
 MAST_COLUMNS = {
-    "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
+    "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
     "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
     "messenger_stagger": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
     "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE, "uplift_room": _SIZE,
@@ -33,8 +34,8 @@ MAST_COLUMNS = {
 )  # fmt: skip
 """Columns of a mast table. ``curve_radius_after``, ``pre_sag``: of the span that begins at the mast."""
 DROPPER_COLUMNS = {
-    "span": _WHOLE, "from_support": _WHOLE, "to_support": _WHOLE, "dropper": _WHOLE, "chainage": _LENGTH,
-    "position": _SIZE, "length": _SIZE, "cut_length": _SIZE, "height_offset": _LENGTH,
+    "section": _WHOLE, "span": _WHOLE, "from_support": _WHOLE, "to_support": _WHOLE, "dropper": _WHOLE,
+    "chainage": _LENGTH, "position": _SIZE, "length": _SIZE, "cut_length": _SIZE, "height_offset": _LENGTH,
     "contact_wire": _WHOLE, "hangs_on": Column("text", words=("messenger wire", "stitch wire")),
 } | dict.fromkeys(
     ("installed_length", "force", "contact_wire_height", "contact_wire_height_error"), _RESULT
@@ -60,7 +61,8 @@ def catenary_from_tables(
     """A line from tables of its masts and droppers (CSV), such as ``catenary-fe form -o`` writes.
 
     Columns carry their unit: ``stagger_mm``, ``chainage [m]``. Mast tables need ``chainage`` and ``stagger``,
-    dropper tables ``span`` and ``position`` or ``chainage``. Droppers with a ``length`` are hung with it.
+    dropper tables ``span`` and ``position`` or ``chainage``. Droppers with a ``length`` are hung with it. Of
+    several tension sections, a column ``section`` numbers them; the masts of an overlap are there for both.
 
     masts : file, one row a mast
     droppers : file, one row a dropper; unset: by the rule of the line type, or as spans of the same length
@@ -78,32 +80,66 @@ def read_line(
     masts: str | Path, droppers: str | Path | None = None, *, base: Any, name: str | None = None
 ) -> LineFromTables:
     """As :func:`catenary_from_tables`, with what was not read."""
-    pattern = LinePattern.of(base)
+    pattern, name = LinePattern.of(base), name or Path(masts).stem
     mast_table = one_wire(read_table(masts, MAST_COLUMNS, ("chainage", "stagger"), numbered=True))
+    dropper_table = None if droppers is None else read_table(droppers, DROPPER_COLUMNS, ("span",))
+    parts, hung = by_section(mast_table), by_section(dropper_table) if dropper_table else {}
+    if dropper_table and hung.keys() != parts.keys():
+        raise InputError(
+            f"{dropper_table.path}: droppers of sections {_listed(hung)}, masts of {_listed(parts)}: give"
+            " both for each section"
+        )
+    made = [_section(part, hung.get(n), pattern, name) for n, part in parts.items()]
+    tables = [mast_table, *([dropper_table] if dropper_table else [])]
+    found = made[0] if len(made) == 1 else _joined(list(parts.values()), made)
+    return LineFromTables(found, {str(t.path): t.not_read for t in tables if t.not_read})
+
+
+def _listed(parts: Iterable[int]) -> str:
+    return ", ".join(map(str, parts))
+
+
+def _joined(tables: Sequence[Table], sections: Sequence[Catenary]) -> Catenary:
+    """Sections with the overlaps that their masts share, as the tables have them."""
+    overlaps = []
+    for before, behind in pairwise(tables):
+        first = behind.rows[0]["chainage"]
+        shared = sum(row["chainage"] > first - ROUNDED for row in before.rows) - 1
+        if shared < 1:
+            raise InputError(
+                f"{behind.where(0, 'chainage')}: {first:g} m: the sections share no span; they must overlap"
+            )
+        overlaps.append(Overlap(spans=min(shared, 12), as_written=True))
+    try:
+        return join_sections(sections, overlaps)
+    except InputError as error:
+        raise InputError(*(f"{tables[0].path}: {text}" for text in error.problems)) from None
+
+
+def _section(mast_table: Table, dropper_table: Table | None, pattern: LinePattern, name: str) -> Catenary:
+    """The line of one section. Raises InputError."""
     at = _chainages(mast_table)
     lengths = [round(b - a, 6) for a, b in pairwise(at)]
     _check_spans(mast_table, lengths)
     supports = _supports(mast_table, pattern, lengths)
-    tables = [mast_table]
-    if droppers is None:
+    if dropper_table is None:
         spans = [pattern.span(length) for length in lengths]
     else:
-        tables.append(read_table(droppers, DROPPER_COLUMNS, ("span",)))
-        spans = _spans(tables[1], pattern, at, lengths)
+        spans = _spans(dropper_table, pattern, at, lengths)
     line = pattern.line
     try:
         found = line.replace(
-            name=name or Path(masts).stem,
+            name=name,
             source=f"{line.source}; masts and droppers of tables".removeprefix("; "),
             spans=_with_own(mast_table, spans),
             supports=supports,
             evaluated_spans=None,
         )
     except InputError as error:
-        raise InputError(*(_placed(text, tables) for text in error.problems)) from None
-    if droppers is not None:
-        _check_hangers(tables[1], found)
-    return LineFromTables(found, {str(t.path): t.not_read for t in tables if t.not_read})
+        raise InputError(*(_placed(text, mast_table, dropper_table) for text in error.problems)) from None
+    if dropper_table is not None:
+        _check_hangers(dropper_table, found)
+    return found
 
 
 def _chainages(table: Table) -> list[float]:
@@ -176,15 +212,14 @@ def _with_own(table: Table, spans: Sequence[Span]) -> tuple[Span, ...]:
     return tuple(found)
 
 
-def _placed(text: str, tables: Sequence[Table]) -> str:
+def _placed(text: str, masts: Table, droppers: Table | None) -> str:
     """A fault of the whole line with the file, and the row of the dropper or the mast that it is about."""
-    if found := re.match(r"span (\d+): dropper (\d+)", text):
-        rows = [i for i, row in enumerate(tables[-1].rows) if row.get("span") == int(found[1])]
-        if len(tables) > 1:
-            return f"{tables[1].where(rows[int(found[2]) - 1])}: {text}"
+    if droppers and (found := re.match(r"span (\d+): dropper (\d+)", text)):
+        rows = [i for i, row in enumerate(droppers.rows) if row.get("span") == int(found[1])]
+        return f"{droppers.where(rows[int(found[2]) - 1])}: {text}"
     if found := re.match(r"(?:support|span) (\d+)\b", text):
-        return f"{tables[0].where(int(found[1]) - 1)}: {text}"
-    return text if text.startswith(str(tables[0].path)) else f"{tables[0].path}: {text}"
+        return f"{masts.where(int(found[1]) - 1)}: {text}"
+    return text if text.startswith(str(masts.path)) else f"{masts.path}: {text}"
 
 
 def _supports(table: Table, pattern: LinePattern, lengths: Sequence[float]) -> tuple[Support, ...]:

@@ -7,7 +7,7 @@ import difflib
 import io
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -149,6 +149,26 @@ def one_wire(table: Table) -> Table:
     if faults:
         raise InputError(*faults)
     return Table(table.path, rows, table.lines, headings, table.not_read)
+
+
+def by_section(table: Table) -> dict[int, Table]:
+    """The table's parts by the number of their tension section; 1 where it has no such column.
+
+    Raises InputError where the numbers do not run from 1 in order.
+    """
+    numbers = [row.get("section") or 1 for row in table.rows]
+    last = 0
+    for i, number in enumerate(numbers):
+        if number not in (last, last + 1) or number == 0:
+            place = table.where(i, "section" if table.has("section") else None)
+            raise InputError(f"{place}: section {number} after section {last}: number them from 1, in order")
+        last = number
+    parts = {}
+    for number in range(1, last + 1):
+        kept = [i for i, n in enumerate(numbers) if n == number]
+        rows, lines = [table.rows[i] for i in kept], [table.lines[i] for i in kept]
+        parts[number] = replace(table, rows=rows, lines=lines)
+    return parts
 
 
 def _cells(path: Path) -> tuple[list[int], list[list[str]]]:

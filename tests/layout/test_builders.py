@@ -76,6 +76,13 @@ def test_a_line_of_spans_that_differ():
     assert np.abs(shape.height_errors).max() < 1e-4
 
 
+@pytest.mark.parametrize("length", [40, 50, 60])
+def test_nothing_that_is_built_is_without_effect(length):
+    line = cf.build_line("Re 250", [length] * 4)
+    assert line.stitch_wire_lengths.tolist() == [0, *[{40: 0, 50: 14, 60: 18}[length]] * 3, 0]
+    assert cf.layout_warnings(line) == []
+
+
 def test_twin_wires_hang_in_turns_and_sag_with_the_span():
     line = cf.build_line("CA-220 3 kV", [60, 50], staggers=[0.2, -0.1, 0.2])
     assert line.dropper_contact_wires.tolist() == [0, 1] * 15

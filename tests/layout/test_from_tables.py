@@ -96,7 +96,7 @@ def faults(base, *paths):
         ("\n2,", "\n7,", "row 3, column support: 7: must be 2, one row a mast in order"),
         ("[mm]", "[kg]", "row 1, column 3 ('Stagger [kg]'): unit 'kg' does not fit a length: must be one of"),
         ("Stagger [mm]", "Stagger", "row 1, column 3 ('Stagger'): the unit is missing: m, cm, mm, km; write"),
-        ("Stagger [mm]", "sweep_mm", "row 1, column 3 ('sweep_mm'): no column that is known; known are supp"),
+        ("Stagger [mm]", "sweep_mm", "row 1, column 3 ('sweep_mm'): no column that is known; known are sect"),
         ("chainage_m", "chanage_m", "row 1, column 2 ('chanage_m'): no column that is known; did you mean c"),
         ("uplift_room_mm", "stagger_m", "row 1, column 6 ('stagger_m'): stagger is there twice"),
         ("support", "support_m", "row 1, column 1 ('support_m'): support has no unit; write support"),
@@ -194,3 +194,26 @@ def test_units_are_taken_from_the_heading(tmp_path):
     path.write_text("Length [cm],force_kN,stiffness_N_per_mm\n12.5,0.3,1.5\n", "utf-8")
     columns = {"length": Column("length"), "force": Column("force"), "stiffness": Column("stiffness")}
     assert read_table(path, columns, ()).rows == [{"length": 0.125, "force": 300.0, "stiffness": 1500.0}]
+
+
+def test_several_sections_share_the_masts_of_their_overlap(tmp_path):
+    head = "section,chainage_m,stagger_m,contact_wire_height_m\n"
+    first = [f"1,{60 * i},{0.2 * (-1) ** i:g},{5.3 if i < 5 else 5.8}\n" for i in range(6)]
+    second = [f"2,{60 * i},{-0.2 * (-1) ** i:g},{5.3 if i > 2 else 5.8}\n" for i in range(2, 9)]
+    masts = tmp_path / "masts.csv"
+    masts.write_text(head + "".join(first + second), "utf-8")
+    line = cf.catenary_from_tables(masts, base="Re 250")
+    assert [len(section.spans) for section in line.sections] == [5, 6]
+    assert line.overlaps == (cf.layout.Overlap(spans=3, as_written=True),)
+    assert line.length == 480 and line.sections[1].contact_wire_heights[0] == 5.8
+    masts.write_text(head + "".join(first + second[3:]), "utf-8")
+    with pytest.raises(cf.InputError, match="row 8, column chainage_m: 300 m: the sections share no span"):
+        cf.catenary_from_tables(masts, base="Re 250")
+    masts.write_text(head + "".join(second + first), "utf-8")
+    with pytest.raises(cf.InputError, match="row 2, column section: section 2 after section 0: number them"):
+        cf.catenary_from_tables(masts, base="Re 250")
+    masts.write_text(head + "".join(first + second), "utf-8")
+    droppers = tmp_path / "droppers.csv"
+    droppers.write_text("section,span,position_m\n1,1,20\n", "utf-8")
+    with pytest.raises(cf.InputError, match="droppers of sections 1, masts of 1, 2: give both"):
+        cf.catenary_from_tables(masts, droppers, base="Re 250")
