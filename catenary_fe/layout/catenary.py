@@ -288,6 +288,13 @@ class Catenary(Parameters):
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
     @_fixed_array
+    def stitch_wire_lengths(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): of the stitch wires at the supports; 0 where none hangs."""
+        usual = self.stitch_wire.length if self.stitch_wire else 0.0
+        own = [s.stitch_wire_length or usual for s in self.supports]
+        return np.array([each if self.has_stitch_wire(i) else 0.0 for i, each in enumerate(own)])
+
+    @_fixed_array
     def staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
         return np.array([support.stagger for support in self.supports])

@@ -327,6 +327,8 @@ class Support(Parameters):
     """[m] of the messenger wire to the left of the track's centre (+y)"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""
+    stitch_wire_length: Positive | None = None
+    """[m] along the track of the stitch wire here; unset: that of the stitch wire itself"""
 
     @model_validator(mode="after")
     def _damping_needs_a_spring(self) -> Self:

@@ -215,7 +215,8 @@ def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
-        rows.append(("stitch wires", f"{catenary.stitch_wire.length:g} m long"))
+        lengths = catenary.stitch_wire_lengths[list(catenary.stitched_supports)]
+        rows.append(("stitch wires", f"{_range(lengths)} m long"))
     return rows
 
 
