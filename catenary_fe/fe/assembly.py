@@ -24,6 +24,7 @@ from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
 from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout.equipment import stations
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -91,6 +92,7 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
         clamps += [wire.supports, np.array([0, wire.x.size - 1])]
         if n == mesh.contact_wires:
             clamps.append(mesh.stitch_ends.ravel())
+        clamps.append(np.searchsorted(wire.x, np.array(stations(catenary, mesh.wire_name(n))) - 1e-6))
         fixed = np.unique(np.concatenate(clamps))
         contact = n < mesh.contact_wires
         found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))

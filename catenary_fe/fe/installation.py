@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.fe.equipment import add_to_elements, lumped
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import Catenary, Wire
 
@@ -122,7 +123,12 @@ def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
 def element_values(catenary: Catenary, mesh: Mesh, name: str) -> Floats:
     """Shape (elements of all wires,): a parameter of each element's wire, by its name."""
     counts = [wire.x.size - 1 for wire in mesh.wires]
-    return np.repeat([float(getattr(kind, name)) for kind in wire_kinds(catenary, mesh)], counts)
+    values = [
+        np.full(n, float(getattr(kind, name)))
+        for n, kind in zip(counts, wire_kinds(catenary, mesh), strict=True)
+    ]
+    add_to_elements(catenary, mesh, name, values)
+    return np.concatenate(values)
 
 
 def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
@@ -147,20 +153,21 @@ def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
     T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
     """
     curvature = np.array([span.curvature for span in catenary.spans])
+    pulls = element_pulls(catenary, mesh)
+    counts = np.cumsum([p.size for p in pulls])[:-1]
+    masses = np.split(element_values(catenary, mesh, "mass_per_length"), counts)
     found = []
-    for wire, kind, pulls in zip(
-        mesh.wires, wire_kinds(catenary, mesh), element_pulls(catenary, mesh), strict=True
-    ):
+    for wire, pull, mass in zip(mesh.wires, pulls, masses, strict=True):
         middle = (wire.x[:-1] + wire.x[1:]) / 2
         span = np.searchsorted(catenary.support_positions, middle) - 1
-        found.append(pulls * curvature[span] / kind.mass_per_length)
+        found.append(pull * curvature[span] / mass)
     return found
 
 
 def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Floats, Floats]:
     """[kg], shape (nodes of all wires,) each: masses that move with the nodes, and that weigh on them.
 
-    Of clamps, droppers and arms.
+    Of clamps, droppers, equipment and arms.
     """
     masses = np.zeros(mesh.first_nodes[-1])
     half = np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
@@ -171,6 +178,7 @@ def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Float
     if catenary.stitch_wire:
         ends = mesh.first_nodes[mesh.contact_wires] + mesh.stitch_ends
         masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
+    np.add.at(masses, *lumped(catenary, mesh))
     hanging = masses.copy()
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         if arm := support.steady_arm:

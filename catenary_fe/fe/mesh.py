@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import Catenary, InputError
 from catenary_fe.layout.arguments import number
+from catenary_fe.layout.equipment import stations
 from catenary_fe.layout.parameters import changed_by_copy
 
 Floats = NDArray[np.float64]
@@ -145,12 +146,13 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     for i, middle in enumerate(middles):
         above[np.abs(at - middle) < half - _CLAMP_ROOM] = contact_wires + 1 + i
     ends = np.stack([middles - half, middles + half], axis=1)
+    extra = stations(catenary, "contact wire")
     lines = [
-        _line_mesh(catenary, at[below == i], settings, settings.contact_wire_element)
+        _line_mesh(catenary, np.append(at[below == i], extra), settings, settings.contact_wire_element)
         for i in range(contact_wires)
     ]
-    hangers = np.concatenate([at[above == contact_wires], ends.ravel()])
-    lines.append(_line_mesh(catenary, hangers, settings, settings.messenger_wire_element))
+    hangers = [at[above == contact_wires], ends.ravel(), stations(catenary, "messenger wire")]
+    lines.append(_line_mesh(catenary, np.concatenate(hangers), settings, settings.messenger_wire_element))
     for i, pair in enumerate(ends):
         on_it = at[above == contact_wires + 1 + i]
         x = _stations(np.concatenate([pair, on_it]), settings, settings.messenger_wire_element)

@@ -3,6 +3,7 @@
 from catenary_fe.layout import library
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.pantograph import (
@@ -30,6 +31,7 @@ __all__ = [
     "DescribedPantograph",
     "Dropper",
     "ElasticPantograph",
+    "Equipment",
     "InputError",
     "Panhead",
     "Pantograph",

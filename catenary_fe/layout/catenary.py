@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import (
     GRAVITY,
@@ -82,6 +83,8 @@ class Catenary(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
@@ -342,7 +345,10 @@ class Catenary(Parameters):
         n = len(self.spans)
         evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
         return self.replace(
-            spans=tuple(reversed(spans)), supports=self.supports[::-1], evaluated_spans=evaluated
+            spans=tuple(reversed(spans)),
+            supports=self.supports[::-1],
+            equipment=tuple(item.mirrored(self) for item in self.equipment),
+            evaluated_spans=evaluated,
         )
 
 

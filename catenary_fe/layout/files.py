@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
@@ -181,6 +182,8 @@ class LayoutFile(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.equipment import equipment_faults
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import AnyPantograph
 from catenary_fe.layout.parameters import Parameters
@@ -17,7 +18,12 @@ if TYPE_CHECKING:
 
 def catenary_faults(catenary: Catenary) -> list[str]:
     """One line for each fault of a catenary whose parts are sound by themselves."""
-    return [*_faults_of_line(catenary), *_faults_of_droppers(catenary), *_faults_of_stitch_wires(catenary)]
+    return [
+        *_faults_of_line(catenary),
+        *_faults_of_droppers(catenary),
+        *_faults_of_stitch_wires(catenary),
+        *equipment_faults(catenary),
+    ]
 
 
 def _faults_of_line(catenary: Catenary) -> Iterator[str]:
@@ -133,6 +139,11 @@ _ARM: dict[str, Range] = {
     "clamp_mass": (0.0, 5.0, "kg"),
     "uplift_room": (0.02, 0.6, "m"),
 }
+_EQUIPMENT: dict[str, Range] = {
+    "mass": (0.05, 80.0, "kg"),
+    "length": (0.02, 20.0, "m"),
+    "bending_stiffness": (1.0, 1e6, "N m²"),
+}
 
 
 @checked
@@ -225,6 +236,8 @@ def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Rang
         yield f"span {i}: ", span, _SPAN
         for n, dropper in enumerate(span.droppers, start=1):
             yield f"span {i}: dropper {n}: ", dropper, _DROPPER
+    for n, item in enumerate(catenary.equipment, start=1):
+        yield f"equipment {n}: ", item, _EQUIPMENT
     for i, support in enumerate(catenary.supports, start=1):
         yield f"support {i}: ", support, _SUPPORT
         if support.steady_arm:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.assembly import balanced
 from catenary_fe.fe.cable import scattered
+from catenary_fe.fe.equipment import lumped
 from catenary_fe.fe.installation import Installation, curve_pulls
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
@@ -116,6 +117,8 @@ class WireSubstructures:
                 force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_heights[i]
             elif not arm.holds_height:
                 force[at] += self._lift(at, arm)
+        nodes, masses = lumped(self.catenary, self.mesh)
+        np.add.at(force, self.wires.dof[nodes], -GRAVITY * masses)
         if self.catenary.stitch_wire:
             clamps = self.mesh.first_nodes[self.mesh.contact_wires] + self.mesh.stitch_ends.ravel()
             np.add.at(force, clamps, -GRAVITY * self.catenary.stitch_wire.clamp_mass)
