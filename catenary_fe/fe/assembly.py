@@ -189,6 +189,8 @@ class _Restraints:
 
     def _supports(self) -> None:
         last, up, wire = len(self.catenary.supports) - 1, self.axes - 1, self.mesh.contact_wires
+        if self.mesh.messenger is None:
+            return
         for i, support in enumerate(self.catenary.supports):
             node = int(self.mesh.messenger.supports[i])
             springs = {up: (support.messenger_stiffness, support.messenger_damping)}

@@ -114,7 +114,9 @@ def dropper_damping(catenary: Catenary) -> Floats:
 
 def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
     """Each wire's parameters, in the order of the mesh."""
-    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires + [catenary.messenger_wire]
+    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires
+    if catenary.messenger_wire:
+        lines.append(catenary.messenger_wire)
     if catenary.stitch_wire:
         lines += [catenary.stitch_wire] * len(mesh.stitch_ends)
     return lines

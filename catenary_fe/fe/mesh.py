@@ -87,7 +87,7 @@ class Clamps:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Meshes of all wires of a catenary: contact wires, then the messenger wire, then stitch wires.
+    """Meshes of all wires of a catenary: contact wires, then the messenger wire if any, then stitch wires.
 
     contact_wires : how many there are
     lower, upper : where the droppers are clamped, below on a contact wire, above on the messenger or a
@@ -107,14 +107,14 @@ class Mesh:
         return self.wires[0]
 
     @property
-    def messenger(self) -> WireMesh:
-        """The messenger wire."""
-        return self.wires[self.contact_wires]
+    def messenger(self) -> WireMesh | None:
+        """The messenger wire; None without one."""
+        return self.wires[self.contact_wires] if len(self.wires) > self.contact_wires else None
 
     @property
     def first_stitch(self) -> int:
         """Number of the first stitch wire among all wires, whether there is one or not."""
-        return self.contact_wires + 1
+        return self.contact_wires + (1 if self.messenger else 0)
 
     @property
     def first_nodes(self) -> Integers:
@@ -152,7 +152,8 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
         for i in range(contact_wires)
     ]
     hangers = [at[above == contact_wires], ends.ravel(), stations(catenary, "messenger wire")]
-    lines.append(_line_mesh(catenary, np.concatenate(hangers), settings, settings.messenger_wire_element))
+    if catenary.messenger_wire:
+        lines.append(_line_mesh(catenary, np.concatenate(hangers), settings, settings.messenger_wire_element))
     for i, pair in enumerate(ends):
         on_it = at[above == contact_wires + 1 + i]
         x = _stations(np.concatenate([pair, on_it]), settings, settings.messenger_wire_element)
@@ -162,7 +163,7 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
         contact_wires=contact_wires,
         lower=_clamps(lines, below, at),
         upper=_clamps(lines, above, at),
-        stitch_ends=np.searchsorted(lines[contact_wires].x, ends - _ROUNDING),
+        stitch_ends=np.searchsorted(lines[-1 if not ends.size else contact_wires].x, ends - _ROUNDING),
     )
 
 

@@ -69,8 +69,9 @@ class Catenary(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: Wire
     """the wire that the pantograph touches"""
-    messenger_wire: Wire
-    """the wire that carries the droppers"""
+    messenger_wire: Wire | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWire | None = None
@@ -111,7 +112,7 @@ class Catenary(Parameters):
         span_length: float,
         droppers: Sequence[Dropper],
         contact_wire: Wire,
-        messenger_wire: Wire,
+        messenger_wire: Wire | None = None,
         support: Support,
         pre_sag: float = 0.0,
         stagger: float = 0.0,
@@ -235,8 +236,13 @@ class Catenary(Parameters):
 
     @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
-        """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
+        """[m], shape (spans + 1,): height of the installed messenger wire at the supports.
+
+        Without one, of the contact wire.
+        """
         heights = [s.system_height or self.system_height for s in self.supports]
+        if self.messenger_wire is None:
+            return self.contact_wire_heights
         above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
         return above
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from catenary_fe.layout.parameters import NonNegative, Number, Parameters, Positive, Text
 
@@ -20,14 +20,14 @@ class Equipment(Parameters):
     """What sits on a wire at a place within the spans: its mass, and its stiffness over its length.
 
     Its weight hangs on the wire from the start: droppers are cut with it in place. Without a length it is one
-    mass at a point (a feeder or jumper clamp); with one, its mass is spread evenly over it (a section insulator,
-    the insulating rods of a neutral section). The contact wire runs on under it: a skid that changes the
-    running surface is no part of it.
+    mass at a point (a feeder or jumper clamp); with one, its mass is spread evenly over it (a section
+    insulator, the insulating rods of a neutral section). The contact wire runs on under it: a skid that
+    changes the running surface is no part of it.
     """
 
     x: Number | None = None
     """[m] of its middle from the line's first support; or give `span` and `position`"""
-    span: int | None = None
+    span: Annotated[int, Field(strict=True)] | None = None
     """number of the span that it is in, from 1, beside `position`"""
     position: Number | None = None
     """[m] of its middle from that span's first support"""
@@ -124,7 +124,10 @@ def equipment_faults(catenary: Catenary) -> Iterator[str]:
     for pieces in found.values():
         for (_, end, first), (begin, _, second) in pairwise(sorted(pieces)):
             if begin < end:
-                yield f"{second} begins at {begin:g} m, before {first} ends at {end:g} m on the same wire; part them"
+                yield (
+                    f"{second} begins at {begin:g} m, before {first} ends at {end:g} m on the same wire;"
+                    " part them"
+                )
 
 
 def _too_close(catenary: Catenary, item: Equipment) -> Iterator[str]:

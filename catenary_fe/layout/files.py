@@ -159,8 +159,9 @@ class LayoutFile(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: WireEntry
     """the wire that the pantograph touches"""
-    messenger_wire: WireEntry
-    """the wire that carries the droppers"""
+    messenger_wire: WireEntry | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWireEntry | None = None
@@ -201,7 +202,7 @@ class LayoutFile(Parameters):
         try:
             catenary = Catenary(
                 contact_wire=self.contact_wire.wire(),
-                messenger_wire=self.messenger_wire.wire(),
+                messenger_wire=self.messenger_wire and self.messenger_wire.wire(),
                 stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
                 spans=spans,
                 supports=supports,

@@ -23,6 +23,7 @@ def catenary_faults(catenary: Catenary) -> list[str]:
         *_faults_of_droppers(catenary),
         *_faults_of_stitch_wires(catenary),
         *equipment_faults(catenary),
+        *_faults_without_messenger(catenary),
     ]
 
 
@@ -61,6 +62,30 @@ def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
                 )
 
 
+def _faults_without_messenger(catenary: Catenary) -> Iterator[str]:
+    """What needs a messenger wire, on a line without."""
+    if catenary.messenger_wire is not None:
+        return
+    hung = [i for i, span in enumerate(catenary.spans, start=1) if span.droppers]
+    if hung:
+        yield (
+            f"messenger_wire is missing, and span {hung[0]} has droppers; add it: the wire that carries them,"
+            " or leave out all droppers of a contact wire that hangs at the supports alone"
+        )
+        return
+    if catenary.stitch_wire is not None:
+        yield "stitch_wire without a messenger_wire has nothing to be clamped on; give both, or neither"
+    for n, item in enumerate(catenary.equipment, start=1):
+        if item.wire == "messenger wire":
+            yield f"equipment {n}: wire = 'messenger wire', but the line has none; put it on the contact wire"
+    for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
+        if support.steady_arm is None:
+            yield (
+                f"support {i}: neither a steady_arm nor droppers hold the contact wire; give a steady_arm, or"
+                " make one span of the two"
+            )
+
+
 def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
     wire = catenary.stitch_wire
     if wire is None:
@@ -72,7 +97,7 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
                 f"span {i + 1}: stitch wires of {wire.length:g} m meet in a span of {span.length:g} m;"
                 " shorten stitch_wire.length"
             )
-    if wire.tension >= catenary.messenger_wire.tension:
+    if catenary.messenger_wire and wire.tension >= catenary.messenger_wire.tension:
         yield (
             f"stitch_wire.tension = {wire.tension:g} N leaves the messenger wire none of its"
             f" {catenary.messenger_wire.tension:g} N; lower it"
@@ -154,7 +179,10 @@ def layout_warnings(catenary: Catenary) -> list[str]:
         for text in _unusual(owner, usual):
             found.setdefault((type(owner), text), f"{where}{text}")
     warnings = list(found.values())
-    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
+    for name in ("contact_wire", "messenger_wire"):
+        wire = getattr(catenary, name)
+        if wire is None:
+            continue
         if wire.tension < 1000:
             warnings.append(
                 f"{name}.tension = {wire.tension:g} N is below 1000 N: looks like kN, the field takes N"
@@ -188,6 +216,8 @@ def _without_effect(catenary: Catenary) -> list[str]:
             found.setdefault(
                 "stitch", f"support {i}: stitch_wire = false has no effect: the line has no stitch wires"
             )
+    if catenary.messenger_wire is None:
+        found |= dict(_of_messenger(catenary))
     if catenary.stitch_wire and not catenary.stitched_supports:
         found["stitch"] = "stitch_wire has no effect: no support between the line's ends has one"
     for i, span in enumerate(catenary.spans, start=1):
@@ -199,6 +229,17 @@ def _without_effect(catenary: Catenary) -> list[str]:
                 " droppers, where a dropper without a height_offset has to be",
             )
     return list(found.values()) + _anchored(catenary)
+
+
+def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
+    """Values that a line without a messenger wire does not need."""
+    if catenary.system_height != type(catenary).model_fields["system_height"].default:
+        yield "height", f"system_height = {catenary.system_height:g} m has no effect without a messenger_wire"
+    names = ("messenger_stiffness", "messenger_lateral_stiffness", "messenger_stagger", "system_height")
+    for i, support in enumerate(catenary.supports, start=1):
+        for name in names:
+            if value := getattr(support, name):
+                yield name, f"support {i}: {name} = {value:g} has no effect without a messenger_wire"
 
 
 def _anchored(catenary: Catenary) -> list[str]:
@@ -229,7 +270,8 @@ def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Rang
     yield "", catenary, _LINE
     yield "damping.", catenary.damping, _DAMPING
     yield "contact_wire.", catenary.contact_wire, _WIRE
-    yield "messenger_wire.", catenary.messenger_wire, _WIRE
+    if catenary.messenger_wire:
+        yield "messenger_wire.", catenary.messenger_wire, _WIRE
     if catenary.stitch_wire:
         yield "stitch_wire.", catenary.stitch_wire, _WIRE
     for i, span in enumerate(catenary.spans, start=1):

@@ -134,15 +134,17 @@ class WireSubstructures:
         for wire in range(self.mesh.contact_wires):
             held |= {self._at_support(wire, i): heights[i] for i in (0, last)}
         held |= {at: heights[i] for _, i, at, arm in self._arms() if arm.holds_height}
-        for i, height in enumerate(catenary.messenger_support_heights.tolist()):
-            held[self._at_support(self.mesh.contact_wires, i)] = height
+        if self.mesh.messenger:
+            for i, height in enumerate(catenary.messenger_support_heights.tolist()):
+                held[self._at_support(self.mesh.contact_wires, i)] = height
         return held
 
     def _fixed_lateral(self) -> Fixed:
         """Lateral positions [m] that masts hold, by displacement."""
         catenary, held, last = self.catenary, {}, len(self.catenary.supports) - 1
         for i, support in enumerate(catenary.supports):
-            held[self._at_support(self.mesh.contact_wires, i)] = support.messenger_stagger
+            if self.mesh.messenger:
+                held[self._at_support(self.mesh.contact_wires, i)] = support.messenger_stagger
             if not (support.steady_arm or i in (0, last)):
                 continue
             for wire, offset in enumerate(catenary.contact_wire_offsets):
@@ -292,8 +294,11 @@ class WireSubstructures:
         loads = self._distributed_loads()
         slopes = [wires.slopes(u, load) for u, load in zip(self.found, loads, strict=True)]
         points = np.column_stack([wires.x, *self.found[:, :n][:, wires.dof]])
-        supported = [self._at_support(mesh.contact_wires, i) for i in range(len(self.catenary.supports))]
-        arm_forces, support_forces = self._arm_forces(), self.reactions[:, supported].T
+        arm_forces = self._arm_forces()
+        support_forces = np.zeros((len(self.catenary.supports), self.axes - 1))
+        if mesh.messenger:
+            supported = [self._at_support(mesh.contact_wires, i) for i in range(len(support_forces))]
+            support_forces = self.reactions[:, supported].T
         if self.axes == 3:
             check_links(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))

@@ -114,7 +114,7 @@ def _add_balances(variables: Rows, coordinates: Rows, shape: Shape, history: His
 def _wire_names(shape: Shape) -> list[str]:
     contact = ["contact_wire", "left_contact_wire"][: len(shape.contact_wires)]
     stitch = [f"stitch_wire_{i + 1}" for i in shape.catenary.stitched_supports]
-    return [*contact, "messenger_wire", *stitch]
+    return [*contact, *(["messenger_wire"] if shape.mesh.messenger else []), *stitch]
 
 
 def _add_wire_shapes(variables: Rows, coordinates: Rows, shape: Shape, history: History) -> None:

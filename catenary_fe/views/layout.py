@@ -58,6 +58,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     stretch.draw_lines(ax, lines, "z")
     _draw_droppers(ax, part, lines, stretch.upper_wires(catenary, shape))
     _draw_supports(ax, part, lines, low)
+    _draw_equipment(ax, part, lines)
     scale = "to scale"
     if to_scale:
         ax.set_aspect("equal")
@@ -93,6 +94,23 @@ def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], l
     style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
 
 
+def _draw_equipment(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line]) -> None:
+    """Equipment over its length on its wire, with its name in a close drawing."""
+    catenary = part.catenary
+    label: str | None = "equipment"
+    for item in catenary.equipment:
+        middle = item.middle(catenary)
+        if not part.inside(np.array([middle]))[0]:
+            continue
+        wire = next(line for line in lines if line.name == item.wire)
+        x = np.linspace(*item.ends(catenary), 9)
+        ax.plot(x, wire.height(x), color=style.SUPPORT, linewidth=5, solid_capstyle="round", label=label)
+        label = None
+        if part.is_close and item.name:
+            place = (middle, float(wire.height(x)[4]))
+            style.annotate(ax, item.name, place, (0, -6), ha="center", va="top")
+
+
 def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     x, spans = part.support_x, [part.catenary.spans[n - 1] for n in part.spans]
     middles = (x[:-1] + x[1:]) / 2
@@ -106,6 +124,8 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
     distances = [f"{round(b - a, 3):g}" for a, b in pairwise(stations)]
     if style.label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
         ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
+    if part.catenary.messenger_wire is None:
+        return
     bottom, top = lines[0].height(x[:1])[0], part.catenary.messenger_support_heights[part.first - 1]
     at = x[0] + 0.006 * (part.end - part.start)
     _dimension(ax, (at, bottom), (at, top), f"system height {round(top - bottom, 3):g} m", vertical=True)

@@ -20,6 +20,7 @@ from catenary_fe.views.report.tables import _line_table, _pantograph_table, _wir
 PLANE = """
 name = "two spans in the plane"
 evaluated_spans = [2]
+equipment = [{ x = 20.0, mass = 8.0, length = 2.0, bending_stiffness = 2e3 }]
 contact_wire = { library = "AC-120 CuMg", tension = 15e3 }
 messenger_wire = { library = "BzII 70", tension = 12e3, bending_stiffness = 50.0 }
 damping = { alpha = 0.01, beta = 1e-4 }
@@ -94,6 +95,9 @@ LAYOUT: dict[str, Any] = {
     "name": "another", "source": "elsewhere", "contact_wire_spacing": 0.06, "stagger": 0.25,
     "curve_radius": 700.0, "contact_wire_height": 5.5, "system_height": 1.3, "evaluated_spans": [1],
     "spatial": True, "damping.alpha": 0.02, "damping.beta": 2e-4,
+    "equipment.x": 22.0, "equipment.span": 1, "equipment.position": 3.0, "equipment.mass": 9.0,
+    "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
+    "equipment.name": "an insulator", "equipment.source": "elsewhere",
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
 } | {
     f"{place}.{key}": value
@@ -218,6 +222,7 @@ ELSEWHERE = {
     "holds_design_height": "many wires",
 }  # fmt: skip
 REFUSED = {
+    "equipment.span": "beside x", "equipment.position": "beside x",
     "dropper.position": "each span has its own", "support.stagger": "the layout's alternates",
     "support.steady_arm.side": "half of the links would push", "span.droppers.length": "others have none",
 }  # fmt: skip
@@ -225,7 +230,7 @@ REFUSED = {
 
 def base_of(place: str) -> str:
     owner, _, last = place.rpartition(".")
-    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers"):
+    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment"):
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return ELSEWHERE.get(last, "plane") if last in ("contact_wire", "curve_radius") else of_owner
     return ELSEWHERE.get(last, "plane")

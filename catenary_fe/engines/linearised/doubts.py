@@ -39,7 +39,8 @@ def tension_doubts(
     contact_wires = len(catenary.contact_wire_offsets)
     own, together = catenary.contact_wire.tension, contact_wires * catenary.contact_wire.tension
     touched = gaps.wire < contact_wires
-    carrying = np.where(touched, own, together + catenary.messenger_wire.tension)
+    together += catenary.messenger_wire.tension if catenary.messenger_wire else 0.0
+    carrying = np.where(touched, own, together)
     share = change / carrying
     worst = int(share.argmax())
     if share[worst] <= TENSION_CHANGE:

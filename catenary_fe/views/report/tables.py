@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted
+from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -182,13 +182,20 @@ def _line_table(catenary: Catenary) -> Table:
         ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
         ("contact wire height", f"{_range(catenary.contact_wire_heights)} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
-        ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_heights)} m"),
+        ("system height", _system_height(catenary)),
         ("steady arms", _arms(catenary)),
+        *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_lateral_rows(catenary),
     ]
     return Table("Line", ("", "value"), rows)
+
+
+def _system_height(catenary: Catenary) -> str:
+    if catenary.messenger_wire is None:
+        return "no messenger wire"
+    return f"{_range(catenary.messenger_support_heights - catenary.contact_wire_heights)} m"
 
 
 def _arms(catenary: Catenary) -> str:
@@ -201,6 +208,14 @@ def _arms(catenary: Catenary) -> str:
         if (arm := support.steady_arm)
     )
     return "; ".join(kinds) or "none"
+
+
+def _equipment(item: Equipment) -> str:
+    """A piece with its place, what it has, and its source."""
+    parts = [item.place, f"{item.mass:g} kg"]
+    parts += [f"{item.length:g} m long"] if item.length else []
+    parts += [f"EI = {item.bending_stiffness:g} N m²"] if item.bending_stiffness else []
+    return ", ".join([*parts, item.source or "source not given"])
 
 
 def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
