@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.layout import SolverError
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 FEWEST = 50  # steps that are worth keeping; filters need some
 
 
@@ -24,7 +26,7 @@ class History:
         height; of several points of contact, their mean
     mass_heights : [m], for each pantograph shape (masses, times), above the nominal contact wire height
     dropper_force : [N], shape (droppers, times)
-    support_height : [m], shape (contact wires, spans + 1, times), of the contact wires at the supports
+    support_height : [m], shape (supports of all contact wires, times), of the contact wires there
     wire_x, wire_z : [m], for each wire its stations (nodes,) and its heights (shape times, nodes), or none
     wire_times : [s], times of ``wire_z``
     energy : [J], shape (energy_times,), kinetic and stored, without the contacts', or empty
@@ -37,6 +39,8 @@ class History:
     tension_span : shape (wires, tension_times), number of the span (from 1) where that is
     tension_times : [s]
     notes : what to warn of in the result
+    section_force : [N], shape (pantographs, sections, times), of the contact wires of each section, or
+        none where there is one
     """
 
     time: Floats
@@ -57,6 +61,7 @@ class History:
     tension_span: NDArray[np.int64] | None = None
     tension_times: Floats | None = None
     notes: tuple[str, ...] = ()
+    section_force: Floats | None = None
 
     def until(self, steps: int) -> History | None:
         """The history of the first steps, or None where those are too few to be of use."""
@@ -81,11 +86,34 @@ class History:
             energy=self.energy[:energies],
             energy_times=self.energy_times[:energies],
             driven_work=self.driven_work[:n],
+            section_force=None if self.section_force is None else self.section_force[..., :n],
             lost_work=None if self.lost_work is None else self.lost_work[:n],
             tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
             tension_span=None if self.tension_span is None else self.tension_span[:, :tensions],
             tension_times=None if self.tension_times is None else self.tension_times[:tensions],
         )
+
+
+def of_contacts(force: Floats, height: Floats, sections: Integers) -> tuple[Floats, Floats, Floats | None]:
+    """A pantograph's contact force, the height of the wire over its head, and the force of each section.
+
+    force, height : [N], [m], shape (contacts, times); heights are no number beyond a wire's ends
+    sections : shape (contacts,), of each contact's wire
+
+    Of several points of contact with one section the height is the mean; of several sections the head meets
+    the lower wire.
+    """
+    present = range(int(sections.max()) + 1)
+    means = np.array([height[sections == s].mean(axis=0) for s in present])
+    by_section = np.array([force[sections == s].sum(axis=0) for s in present])
+    several = len(present) > 1
+    return by_section.sum(axis=0), np.fmin.reduce(means), by_section if several else None
+
+
+def section_forces(found: Sequence[tuple[Floats, Floats, Floats | None]]) -> Floats | None:
+    """[N], shape (pantographs, sections, times), of several pantographs, or none."""
+    each = [forces for _, _, forces in found if forces is not None]
+    return np.array(each) if each else None
 
 
 class RunStopped(Exception):  # noqa: N818 the user may have wished it

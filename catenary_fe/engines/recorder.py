@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.history import History
+from catenary_fe.engines.history import History, of_contacts, section_forces
 from catenary_fe.fe.contact import BaseLine, Contact, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
 
@@ -210,27 +210,32 @@ def read_history(
     time: Floats = np.arange(n, dtype=np.float64) * step
     owner = heads.owner[slot]
     at = np.array([placed.position for placed in pantographs])
-    supports = [path.profile[path.supports, 0] for path in system.contact_paths]
-    uplift = records.supports[slot, :, :n].reshape(len(supports), -1, n)
+    supports = np.concatenate([path.profile[path.supports, 0] for path in system.contact_paths])
+    section = np.array([path.section for path in system.contact_paths])[heads.wire[slot]]
     stored = records.wire[slot, : steps // every + 1] if every else np.zeros((0, 0))
     rest, nothing = system.reference[system.heights], np.array([])
     parts = [slice(wire.first, wire.first + wire.x.size) for wire in system.wires]
     of_each = [owner == p for p in range(len(pantographs))]
+    found = [
+        of_contacts(records.force[slot, mine, :n], records.height[slot, mine, :n], section[mine])
+        for mine in of_each
+    ]
     return History(
         time=time,
         position=at[:, None] + start.speed * time,
-        contact_force=np.array([records.force[slot, mine, :n].sum(axis=0) for mine in of_each]),
-        wire_height=np.array([records.height[slot, mine, :n].mean(axis=0) for mine in of_each]),
+        contact_force=np.array([force for force, _, _ in found]),
+        wire_height=np.array([height for _, height, _ in found]),
         mass_heights=[
             records.masses[slot, p, : len(placed.body.bodies), :n].copy()
             for p, placed in enumerate(pantographs)
         ],
         dropper_force=records.droppers[slot, :, :n].copy(),
-        support_height=np.array(supports)[:, :, None] + uplift,
+        support_height=supports[:, None] + records.supports[slot, :, :n],
         wire_x=[wire.x for wire in system.wires],
         wire_z=[rest[part] + stored[:, part] for part in parts] if every else [],
         wire_times=time[::every] if every else None,
         energy=nothing,
         energy_times=nothing,
         driven_work=nothing,
+        section_force=section_forces(found),
     )

@@ -27,6 +27,7 @@ class ContactPath:
     index : shape (nodes, 2), numbers of height and vertical slope among all coordinates
     dof : shape (nodes, 2), likewise among the free ones, or FIXED
     supports : numbers of the nodes at the supports
+    section : number of its tension section, from 0
     """
 
     x: Floats
@@ -36,6 +37,11 @@ class ContactPath:
     index: Integers
     dof: Integers
     supports: Integers
+    section: int = 0
+
+    def meets(self, position: float) -> bool:
+        """Whether a place [m] along the track lies between its ends."""
+        return bool(self.x[0] <= position <= self.x[-1])
 
     def at(self, position: float) -> tuple[int, Floats]:
         """Number of the element at a place [m] along the track, and weights of its two heights and slopes."""

@@ -93,6 +93,7 @@ class Mesh:
     lower, upper : where the droppers are clamped, below on a contact wire, above on the messenger or a
         stitch wire
     stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
+    messengers : how many messenger wires there are: one a tension section, or none
     """
 
     wires: tuple[WireMesh, ...]
@@ -100,6 +101,7 @@ class Mesh:
     lower: Clamps
     upper: Clamps
     stitch_ends: Integers
+    messengers: int = 1
 
     @property
     def contact(self) -> WireMesh:
@@ -109,12 +111,12 @@ class Mesh:
     @property
     def messenger(self) -> WireMesh | None:
         """The messenger wire; None without one."""
-        return self.wires[self.contact_wires] if len(self.wires) > self.contact_wires else None
+        return self.wires[self.contact_wires] if self.messengers else None
 
     @property
     def first_stitch(self) -> int:
         """Number of the first stitch wire among all wires, whether there is one or not."""
-        return self.contact_wires + (1 if self.messenger else 0)
+        return self.contact_wires + self.messengers
 
     @property
     def first_nodes(self) -> Integers:
@@ -125,7 +127,7 @@ class Mesh:
         """A wire in words, by its number."""
         if number < self.contact_wires:
             return "contact wire"
-        return "messenger wire" if number == self.contact_wires else "stitch wire"
+        return "messenger wire" if number < self.first_stitch else "stitch wire"
 
     def nodes(self, clamps: Clamps) -> Integers:
         """Shape (droppers,): numbers of clamped nodes among the nodes of all wires."""
@@ -164,6 +166,7 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
         lower=_clamps(lines, below, at),
         upper=_clamps(lines, above, at),
         stitch_ends=np.searchsorted(lines[-1 if not ends.size else contact_wires].x, ends - _ROUNDING),
+        messengers=1 if catenary.messenger_wire else 0,
     )
 
 

@@ -32,6 +32,8 @@ from catenary_fe.fe.spring import FIXED, Springs
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_SAME_PLACE = 1e-3  # [m] of masts
+
 
 @dataclass(frozen=True)
 class WireNodes:
@@ -42,6 +44,7 @@ class WireNodes:
     supports : numbers of its own nodes at the supports
     clamps : likewise where something is fixed to it, its ends among them: there its tension may step
     tension : [N], shape (nodes - 1,), nominal pull along the track in each element
+    section : number of its tension section, from 0
     """
 
     name: str
@@ -51,6 +54,7 @@ class WireNodes:
     supports: Integers
     clamps: Integers
     tension: Floats
+    section: int = 0
 
 
 @dataclass(frozen=True)
@@ -142,15 +146,27 @@ class System:
                     index=index,
                     dof=self.dof[index],
                     supports=wire.supports,
+                    section=wire.section,
                 )
             )
         return tuple(paths)
 
+    def served(self, position: float) -> list[int]:
+        """Numbers of the contact wires that a head meets at a place [m] along the track: the lowest ones.
+
+        At one height, as in the middle of an overlap, they are those of the first section there.
+        """
+        paths = self.contact_paths
+        there = [n for n, path in enumerate(paths) if path.meets(position)]
+        heights = {n: float(self.row(n, position) @ self.reference) for n in there}
+        section = paths[min(there, key=heights.__getitem__)].section
+        return [n for n in there if paths[n].section == section]
+
     @property
     def support_positions(self) -> Floats:
         """[m], shape (spans + 1,), along the track."""
-        wire = self.wires[0]
-        return wire.x[wire.supports]
+        x = np.sort(np.concatenate([path.x[path.supports] for path in self.contact_paths]))
+        return x[np.diff(x, prepend=-np.inf) > _SAME_PLACE]
 
     @cached_property
     def heights(self) -> Integers:

@@ -6,6 +6,7 @@ from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.line import Line, Overlap, joined, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -33,6 +34,8 @@ __all__ = [
     "ElasticPantograph",
     "Equipment",
     "InputError",
+    "Line",
+    "Overlap",
     "Panhead",
     "Pantograph",
     "PowerSystem",
@@ -46,12 +49,14 @@ __all__ = [
     "Support",
     "Wire",
     "counted",
+    "joined",
     "layout_schema",
     "layout_warnings",
     "library",
     "load_catenary",
     "load_pantograph",
     "pantograph_schema",
+    "read_catenary",
     "recorded_pantograph",
     "target_mean_force",
 ]

@@ -14,6 +14,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.line import Overlap, joined
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
     Lateral,
@@ -148,6 +149,39 @@ class SupportEntry(Support):
         return common.replace(**changes)
 
 
+class SectionEntry(Parameters):
+    """A further tension section, or several equal ones; keys that are not given are as of the first."""
+
+    contact_wire: WireEntry | None = None
+    """the wire that the pantograph touches"""
+    messenger_wire: WireEntry | None = None
+    """the wire that carries the droppers"""
+    stitch_wire: StitchWireEntry | None = None
+    """at each support between the section's ends"""
+    stagger: Lateral | None = None
+    """[m] of the contact wire at the supports, to the left at the first and then to alternating sides"""
+    curve_radius: Number | None = None
+    """[m] of the track in spans that do not say otherwise, positive to the left"""
+    supports: tuple[SupportEntry, ...] | None = None
+    """supports that differ, numbered from the section's first one"""
+    span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
+    """the section's spans in order, those of its overlaps included"""
+    overlap: Overlap | None = None
+    """with the section before; unset: as the layout's `overlap`"""
+    count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
+    """how many sections like this follow one another"""
+
+    def beside(self, first: LayoutFile) -> LayoutFile:
+        """The layout of this section by itself."""
+        own = self.model_fields_set - {"overlap", "count"}
+        return first.replace(
+            **{name: getattr(self, name) for name in own},
+            further_sections=(),
+            overlap=None,
+            evaluated_spans=None,
+        )
+
+
 class LayoutFile(Parameters):
     """A catenary layout, as it is written in a TOML file."""
 
@@ -191,9 +225,36 @@ class LayoutFile(Parameters):
     """numbers of the spans (from 1) for the statistics; unset: the middle third"""
     spatial: Annotated[bool, Field(strict=True)] | None = None
     """true: modelled in space; unset: where stagger, curves or links leave the vertical plane"""
+    further_sections: tuple[SectionEntry, ...] = ()
+    """tension sections behind the one that the other keys describe"""
+    overlap: Overlap | None = None
+    """of each section with the next that does not say otherwise; unset: the default of each key"""
+
+    @model_validator(mode="after")
+    def _overlaps_of_sections(self) -> Self:
+        if self.overlap and not self.further_sections:
+            raise ValueError("overlap has no effect on a line of one section; add [[further_sections]]")
+        return self
 
     def catenary(self) -> Catenary:
-        """The catenary that the file describes. Raises InputError."""
+        """The catenary, or the line of several sections, that the file describes. Raises InputError."""
+        if not self.further_sections:
+            return self._section()
+        first = self.replace(further_sections=(), overlap=None, evaluated_spans=None)
+        sections, overlaps, faults = [first._section()], [], []
+        for number, entry in enumerate(self.further_sections, start=1):
+            try:
+                sections += [entry.beside(self)._section()] * entry.count
+            except InputError as error:
+                faults += [f"further_sections {number}: {line}" for line in error.problems]
+            overlaps += [entry.overlap or self.overlap or Overlap()] * entry.count
+        if faults:
+            raise InputError(*faults)
+        return joined(
+            sections, overlaps, name=self.name, source=self.source, evaluated_spans=self.evaluated_spans
+        )
+
+    def _section(self) -> Catenary:
         self._check_size()
         spans = tuple(span for entry in self.span for span in (self._span(entry),) * entry.count)
         supports, faults = self._all_supports(len(spans) + 1)

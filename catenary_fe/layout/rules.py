@@ -19,12 +19,17 @@ if TYPE_CHECKING:
 def catenary_faults(catenary: Catenary) -> list[str]:
     """One line for each fault of a catenary whose parts are sound by themselves."""
     return [
-        *_faults_of_line(catenary),
+        *line_faults(catenary),
         *_faults_of_droppers(catenary),
         *_faults_of_stitch_wires(catenary),
         *equipment_faults(catenary),
         *_faults_without_messenger(catenary),
     ]
+
+
+def line_faults(catenary: Catenary) -> list[str]:
+    """One line for each fault of evaluated spans, plane and supports."""
+    return list(_faults_of_line(catenary))
 
 
 def _faults_of_line(catenary: Catenary) -> Iterator[str]:

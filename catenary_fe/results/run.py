@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph, Catenary, InputError, recorded_pantograph
+from catenary_fe.layout import AnyPantograph, Catenary, InputError, read_catenary, recorded_pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.check import FAILED, Check, Partial
@@ -66,7 +66,7 @@ class Run:
     @property
     def catenary(self) -> Catenary:
         """The catenary that was run on."""
-        return Catenary.model_validate_json(self.data.attrs["catenary"])
+        return read_catenary(json.loads(self.data.attrs["catenary"]))
 
     @property
     def pantographs(self) -> tuple[AnyPantograph, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 _SUFFIX = "_height"
+_SECTION = re.compile(r"section (\d+) ")
 
 
 @changed_by_copy
@@ -42,6 +44,12 @@ class WireHistory:
     def touched(self) -> bool:
         """Whether pantographs run along it: a contact wire."""
         return self.name.endswith("contact wire")
+
+    @property
+    def section(self) -> int:
+        """Number of its tension section, from 1."""
+        found = _SECTION.match(self.name)
+        return int(found[1]) if found else 1
 
     @property
     def uplift(self) -> Floats:

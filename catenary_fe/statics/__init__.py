@@ -1,7 +1,17 @@
 """Form finding: dropper lengths and the static shape."""
 
 from catenary_fe.statics.form_finding import find_form, find_heights
+from catenary_fe.statics.line import LineShape
 from catenary_fe.statics.schedules import ArmRow, DropperRow, SupportRow
 from catenary_fe.statics.shape import HangingWire, Shape
 
-__all__ = ["ArmRow", "DropperRow", "HangingWire", "Shape", "SupportRow", "find_form", "find_heights"]
+__all__ = [
+    "ArmRow",
+    "DropperRow",
+    "HangingWire",
+    "LineShape",
+    "Shape",
+    "SupportRow",
+    "find_form",
+    "find_heights",
+]

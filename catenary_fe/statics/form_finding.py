@@ -16,9 +16,10 @@ from catenary_fe.fe.equipment import lumped
 from catenary_fe.fe.installation import Installation, curve_pulls
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
-from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
+from catenary_fe.layout import GRAVITY, Catenary, InputError, Line, SolverError, SteadyArm
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.rules import check_lengths, dropper_names
+from catenary_fe.statics.line import join_shapes
 from catenary_fe.statics.rules import (
     check_links,
     check_pulls,
@@ -351,6 +352,8 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     which a dropper or a steady arm would have to push or has no room; SolverError where the passes do not
     come to an end.
     """
+    if isinstance(catenary, Line):
+        return join_shapes(catenary, _of_sections(catenary, mesh))
     check_lengths(catenary)
     if catenary.gives_dropper_lengths:
         return find_heights(catenary, None, mesh)
@@ -388,6 +391,8 @@ def find_heights(
     Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
     """
     lengths = given_lengths(catenary, lengths)
+    if isinstance(catenary, Line):
+        return find_form(catenary.with_dropper_lengths(lengths), mesh)
     wires = WireSubstructures(catenary.with_dropper_lengths(lengths), mesh or MeshSettings())
     wires.set_dropper_weights(lengths)
     wires.solve_cut_wires()
@@ -399,3 +404,14 @@ def find_heights(
     else:
         raise wires.unsettled("static shape: the wires still move", wires.found - before)
     return wires.shape(lengths)
+
+
+def _of_sections(line: Line, mesh: MeshSettings | None) -> list[Shape]:
+    """The sections' shapes, equal ones found once."""
+    found: dict[Catenary, Shape] = {}
+    for number, section in enumerate(line.sections, start=1):
+        try:
+            found[section] = found.get(section) or find_form(section, mesh)
+        except (InputError, SolverError) as error:
+            raise type(error)(*(f"section {number}: {line}" for line in str(error).splitlines())) from None
+    return [found[section] for section in line.sections]

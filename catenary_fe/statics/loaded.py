@@ -31,7 +31,10 @@ _CORRECTIONS, _SAME = 12, 1e-4  # of a lift: change of the last correction
 
 
 class LoadedLine:
-    """A line at rest that is loaded and solved for, again and again. Two contact wires share each force."""
+    """A line at rest that is loaded and solved for, again and again.
+
+    Two contact wires share each force; where there are those of two sections, the lower ones take it.
+    """
 
     def __init__(self, shape: Shape) -> None:
         self.shape = shape
@@ -39,9 +42,9 @@ class LoadedLine:
 
     def load(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
         """[N], shape (all,): upward forces [N] at places [m] along the line."""
-        wires = range(len(self.system.contact_paths))
         load = np.zeros(self.system.dof.size)
         for x, force in zip(positions, forces, strict=True):
+            wires = self.system.served(float(x))
             for wire in wires:
                 load += float(force) / len(wires) * self.system.row(wire, float(x))
         return load

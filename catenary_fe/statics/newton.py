@@ -137,7 +137,13 @@ class _StaticContact:
         self.load = np.concatenate([np.zeros(0), *loads])
         rows = lil_matrix((len(self.contacts), int(self.first[-1])))
         self.rest, self.base = np.zeros((2, len(self.contacts)))
+        self.on = np.array(
+            [system.contact_paths[c.wire].meets(c.position) for c in self.contacts], dtype=bool
+        )
         for j, contact in enumerate(self.contacts):
+            if not self.on[j]:
+                self.rest[j] = np.nan
+                continue
             row, lateral = system.row(contact.wire, contact.position), 0.0
             if system.spatial:
                 lateral = float(system.row(contact.wire, contact.position, 1) @ system.reference)
@@ -155,9 +161,10 @@ class _StaticContact:
         for number, placed in enumerate(self.pantographs):
             law = placed.body.contact
             mine = [j for j, contact in enumerate(self.contacts) if contact.pantograph == number]
-            depth = placed.uplift / len(mine) / law.stiffness if law.stiffness else 0.0
+            met = [j for j in mine if self.on[j]]
+            depth = placed.uplift / len(met) / law.stiffness if law.stiffness and met else 0.0
             begin = self.first[number]
-            x[begin : begin + len(placed.body.bodies)] = self.rest[mine].mean() + depth
+            x[begin : begin + len(placed.body.bodies)] = self.rest[met].mean() + depth if met else 0.0
         return x
 
     def line_part(self, x: Floats) -> Floats:
@@ -168,7 +175,8 @@ class _StaticContact:
         """Shape (contacts,): "force" [N], "slope" [N/m] or "energy" [J] of each contact."""
         laws = [self.pantographs[contact.pantograph].body.contact for contact in self.contacts]
         depths = (self.rows @ x + self.base - self.rest).tolist()
-        return np.array([getattr(law, what)(depth) for law, depth in zip(laws, depths, strict=True)])
+        parts = zip(laws, depths, self.on, strict=True)
+        return np.array([getattr(law, what)(depth) if on else 0.0 for law, depth, on in parts])
 
     def residual(self, x: Floats) -> Floats:
         n = self.system.size

@@ -14,12 +14,13 @@ from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE, gradient_limit
 from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 from catenary_fe.results.signal import CUT_OFF
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 
 Floats = NDArray[np.float64]
 
 FASTEST = 600 / 3.6  # [m/s] no train on a catenary is faster
 SLOWEST = 5 / 3.6  # [m/s]
+OUT_OF_REACH = 0.2  # [m] above the design line: of wires that run off, no head meets them there
 RUN_IN = 2  # spans before the evaluated ones, for the start's transient to be left behind
 
 
@@ -41,9 +42,10 @@ def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float
     start, end : [m] along the line, what is run over
     """
     wires, faults = shape.contact_wires, []
+    several = isinstance(shape, LineShape)
     for pantograph in pantographs:
         if not pantograph.stages:
-            if len(wires) > 1:
+            if len(shape.catenary.contact_wire_offsets) > 1:
                 faults.append(
                     f"{pantograph.name}: an elastic pantograph has one force for one contact wire, the layout"
                     " has two; take a pantograph of masses"
@@ -53,6 +55,10 @@ def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float
         for wire in wires:
             x = np.linspace(start, end, max(2, int(np.ceil(end - start)) + 1))
             x = np.union1d(x, wire.x[(wire.x >= start) & (wire.x <= end)])
+            x = x[(x >= wire.x[0]) & (x <= wire.x[-1])]
+            x = x[wire.height(x) - shape.catenary.design_line(x) < OUT_OF_REACH] if several else x
+            if not x.size:
+                continue
             y = wire.lateral(x)
             worst = int(np.abs(y).argmax())
             if abs(y[worst]) > half:

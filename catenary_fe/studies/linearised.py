@@ -172,7 +172,14 @@ class _Task:
         gaps = line.engine.setup.model.gaps
         warnings = [
             *case.warnings,
-            *tension_doubts(catenary, gaps, extremes.tension, extremes.tension_step, step),
+            *tension_doubts(
+                line.shape.system,
+                catenary.support_positions,
+                gaps,
+                extremes.tension,
+                extremes.tension_step,
+                step,
+            ),
             *slack_doubts(catenary, extremes.shortening, extremes.shortening_step, step),
         ]
         run = make_run(line.shape, case, self.uplifts, line.time, history, warnings, method="linearised")

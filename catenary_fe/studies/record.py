@@ -20,11 +20,12 @@ from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, RunInterrupted, SolverError
 from catenary_fe.results import Run
 from catenary_fe.results.run import FORMAT
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 
 Floats = NDArray[np.float64]
 Rows = dict[str, tuple[Any, ...]]  # dimensions, values, and of a quantity its unit and name
 _NOTES = 3  # by themselves
+SAME_PLACE = 1e-3  # [m] of masts
 CHECKPOINT_FORM = 4  # rises when what a checkpoint holds changes
 
 
@@ -46,8 +47,6 @@ def make_run(
     import xarray as xr
 
     catenary, pantographs = shape.catenary, case.pantographs
-    static = np.array([w.z[m.supports] for w, m in zip(shape.contact_wires, shape.mesh.wires, strict=False)])
-    uplift = (history.support_height - static[:, :, None]).max(axis=0)
     nominal, by_time = catenary.contact_wire_height, ("pantograph", "time")
     masses, wire = nominal + _stack(history.mass_heights), nominal + history.wire_height
     variables: Rows = {
@@ -57,7 +56,12 @@ def make_run(
         "mass_height": (("pantograph", "mass", "time"), masses, "m", "height of the masses"),
         "uplift_force": (("pantograph",), uplifts, "N", "constant force on the lowest mass"),
         "dropper_force": (("dropper", "time"), history.dropper_force, "N", "dropper tension"),
-        "support_uplift": (("support", "time"), uplift, "m", "uplift of the contact wire at supports"),
+        "support_uplift": (
+            ("support", "time"),
+            _support_uplift(shape, history),
+            "m",
+            "uplift of the contact wire at supports",
+        ),
     }
     coordinates: Rows = {
         "time": (("time",), history.time, "s", "time"),
@@ -66,6 +70,10 @@ def make_run(
         "dropper_span": ("dropper", catenary.dropper_spans),
         "support_position": (("support",), catenary.support_positions, "m", "position of supports"),
     }
+    if history.section_force is not None:
+        words = "contact force of each tension section's wires, unfiltered"
+        variables["section_force"] = (("pantograph", "section", "time"), history.section_force, "N", words)
+        coordinates["section"] = ("section", np.arange(history.section_force.shape[1]) + 1)
     _add_wire_shapes(variables, coordinates, shape, history)
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, case.speed, time, method)
@@ -74,6 +82,20 @@ def make_run(
         attributes["model"] = "of a script"
         attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["model"])
     return Run(xr.Dataset(_labelled(variables), _labelled(coordinates), attributes))
+
+
+def _support_uplift(shape: Shape, history: History) -> Floats:
+    """[m], shape (supports, times): of the contact wire that is lifted most at each support."""
+    masts = shape.catenary.support_positions
+    uplift = np.full((masts.size, history.time.size), -np.inf)
+    first = 0
+    for wire, stations in zip(shape.contact_wires, shape.mesh.wires, strict=False):
+        own = slice(first, first + stations.supports.size)
+        at = np.searchsorted(masts, stations.x[stations.supports] - SAME_PLACE)
+        static = wire.z[stations.supports]
+        uplift[at] = np.maximum(uplift[at], history.support_height[own] - static[:, None])
+        first = own.stop
+    return uplift
 
 
 def _labelled(rows: Rows) -> dict[str, Any]:
@@ -112,6 +134,10 @@ def _add_balances(variables: Rows, coordinates: Rows, shape: Shape, history: His
 
 
 def _wire_names(shape: Shape) -> list[str]:
+    if isinstance(shape, LineShape):
+        parts = enumerate(shape.sections, start=1)
+        each = [[f"section_{n}_{wire}" if n > 1 else wire for wire in _wire_names(part)] for n, part in parts]
+        return shape.joint.wires(each)
     contact = ["contact_wire", "left_contact_wire"][: len(shape.contact_wires)]
     stitch = [f"stitch_wire_{i + 1}" for i in shape.catenary.stitched_supports]
     return [*contact, *(["messenger_wire"] if shape.mesh.messenger else []), *stitch]

@@ -15,6 +15,7 @@ from catenary_fe.views.run import (
     plot_dropper_forces,
     plot_energy,
     plot_force_spectrum,
+    plot_handover,
     plot_support_uplift,
 )
 from catenary_fe.views.static import plot_elasticity, plot_mode, plot_spectrum, plot_static_shape
@@ -22,7 +23,8 @@ from catenary_fe.views.waves import plot_family, plot_run_waves, plot_space_time
 
 __all__ = [
     "film", "plot_contact_force", "plot_criteria", "plot_dropper_forces", "plot_elasticity",
-    "plot_energy", "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_layout",
+    "plot_energy", "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
+    "plot_layout",
     "plot_mode", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum", "plot_static_shape",
     "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
     "plot_sweep_uplift", "plot_uplift_comparison",

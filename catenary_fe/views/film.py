@@ -17,6 +17,7 @@ from catenary_fe.layout import InputError
 from catenary_fe.layout.arguments import checked, number, span_numbers, whole
 from catenary_fe.results import Run, WireHistory
 from catenary_fe.results.files import atomic_write
+from catenary_fe.results.wires import contact_wires
 from catenary_fe.views import style
 
 Floats = NDArray[np.float64]
@@ -90,7 +91,9 @@ def scene(run: Run, frames: Sequence[int] | NDArray[np.int64] | None = None) -> 
     dropper_x = np.asarray(data["dropper_position"].values)
     hung = run.catenary.dropper_contact_wires
     positions, masses = np.asarray(data["position"].values), data["mass_height"].values
-    rest = np.interp(positions, wires[0].x, wires[0].static)
+    rest = np.fmin.reduce(
+        [np.interp(positions, w.x, w.static, left=np.nan, right=np.nan) for w in contact_wires(wires)]
+    )
     moved = (masses - masses[:, :, :1] - (rest - rest[:, :1])[:, None, :])[:, :, at]
     return Scene(
         time=wires[0].time[chosen],
@@ -115,7 +118,12 @@ def _ends(wires: Sequence[WireHistory], x: float, number: int) -> tuple[int, int
     """The contact wire (of this number, from 0) at a dropper, and the lowest other wire above it there."""
     heights = [float(np.interp(x, w.x, w.static, left=np.nan, right=np.nan)) for w in wires]
     lower = [i for i, wire in enumerate(wires) if wire.touched][number]
-    above = [i for i, wire in enumerate(wires) if not wire.touched and np.isfinite(heights[i])]
+    own = wires[lower].section
+    above = [
+        i
+        for i, wire in enumerate(wires)
+        if not wire.touched and wire.section == own and np.isfinite(heights[i])
+    ]
     return lower, min(above, key=lambda i: heights[i], default=lower)
 
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.layout import AnyPantograph, Catenary, Panhead
 from catenary_fe.layout.arguments import checked, number
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 from catenary_fe.views import stretch, style
 
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
@@ -83,7 +83,7 @@ def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], l
     """A line up to each messenger wire's support with the support's number, and the steady arms."""
     catenary, x = part.catenary, part.support_x
     tops = catenary.messenger_support_heights[part.supports]
-    wire = lines[0].height(x)
+    wire = stretch.served_height(lines, x)
     ax.vlines(x, low, tops, color=style.SUPPORT, linewidth=0.8, linestyle=":")
     ax.plot(x, tops, "v", color=style.SUPPORT, markersize=7 if part.is_close else 4, label="support")
     inner = range(1, len(catenary.spans))
@@ -126,7 +126,10 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
         ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
     if part.catenary.messenger_wire is None:
         return
-    bottom, top = lines[0].height(x[:1])[0], part.catenary.messenger_support_heights[part.first - 1]
+    bottom, top = (
+        stretch.served_height(lines, x[:1])[0],
+        part.catenary.messenger_support_heights[part.first - 1],
+    )
     at = x[0] + 0.006 * (part.end - part.start)
     _dimension(ax, (at, bottom), (at, top), f"system height {round(top - bottom, 3):g} m", vertical=True)
 
@@ -237,23 +240,39 @@ def _droppers_from_above(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
 
 def _draw_arms(ax: Axes, part: stretch.Stretch, shape: Shape) -> None:
     """Arms at their length, seen from above, with the lateral force that they take."""
-    forces, catenary = shape.installation.arm_forces, shape.catenary
     ends: list[tuple[float, float]] = []
-    texts = []
-    for i in part.supports:
+    texts: list[str] = []
+    parts = shape.sections if isinstance(shape, LineShape) else (shape,)
+    for section, (_, _, begin) in zip(parts, stretch.sections_of(shape.catenary), strict=True):
+        _draw_arms_of(ax, part, section, begin, ends, texts)
+    order = np.argsort([x for x, _ in ends], kind="stable")
+    _name_forces(ax, [ends[i] for i in order], [texts[i] for i in order])
+
+
+def _draw_arms_of(
+    ax: Axes,
+    part: stretch.Stretch,
+    shape: Shape,
+    begin: float,
+    ends: list[tuple[float, float]],
+    texts: list[str],
+) -> None:
+    """The arms of a section that begins at a place [m]; their ends and forces are added to the lists."""
+    forces, catenary = shape.installation.arm_forces, shape.catenary
+    places = catenary.support_positions + begin
+    for i in range(1, len(catenary.spans)):
         arm = catenary.supports[i].steady_arm
-        if arm is None or i in (0, len(catenary.spans)):
+        if arm is None or not part.start - 1e-6 <= places[i] <= part.end + 1e-6:
             continue
         for wire, (stations, force) in enumerate(zip(shape.mesh.wires, forces[:, i], strict=False)):
             hanging, node = shape.wires[wire], stations.supports[i]
-            x, y = hanging.x[node], hanging.y[node]
+            x, y = hanging.x[node] + begin, hanging.y[node]
             reach = arm.length * force[0] / np.linalg.norm(force) if arm.length else 0.15
             ax.plot([x, x], [y, y + reach], color=style.SUPPORT, linewidth=2.2, solid_capstyle="round")
             ax.plot(x, y + reach, marker="s", color=style.SUPPORT, markersize=4)
             if wire == 0:
                 ends.append((x, y + reach))
         texts.append(" + ".join(f"{abs(force[0]):.0f}" for force in forces[:, i]) + " N")
-    _name_forces(ax, ends, texts)
 
 
 def _name_forces(ax: Axes, ends: Sequence[tuple[float, float]], texts: Sequence[str]) -> None:

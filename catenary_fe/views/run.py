@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from catenary_fe.layout.arguments import checked, number
+from catenary_fe.layout import InputError, Line
+from catenary_fe.layout.arguments import checked, number, whole
 from catenary_fe.results import Criterion, ForceStatistics, Run, labels, spectrum
 from catenary_fe.results.quantities import in_short
-from catenary_fe.results.signal import CUT_OFF, FilterKind
+from catenary_fe.results.signal import CUT_OFF, FilterKind, low_pass
 from catenary_fe.statics import Shape
 from catenary_fe.views import style
 from catenary_fe.views.layout import head_width, plot_layout, plot_plan
@@ -28,6 +29,8 @@ def run_pictures(run: Run, shape: Shape, filter: FilterKind) -> Iterator[tuple[s
     if shape.catenary.is_spatial:
         yield "plan", plot_plan(shape, head_width=head_width(run.pantographs))
     yield "contact_force", plot_contact_force(run, filter=filter)
+    if "section_force" in run.data:
+        yield "handover", plot_handover(run, filter=filter)
     yield "support_uplift", plot_support_uplift(run)
     yield "dropper_forces", plot_dropper_forces(run)
     if run.has_energy:
@@ -60,6 +63,56 @@ def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | No
     style.headroom(ax, 0.18 if single else 0.1 + 0.06 * len(figures))
     said = f" ({_in_words(figures[0])})" if single else ""
     return style.finish_run(ax, run, style.ALONG, "contact force (N)", f": contact force{said}")
+
+
+@checked
+@style.styled
+def plot_handover(
+    run: Run, *, pantograph: int = 0, filter: FilterKind = "causal", ax: Axes | None = None
+) -> Axes:
+    """Force of a pantograph on the contact wires of each tension section in the overlaps, and in all.
+
+    pantograph : its number, from 0
+
+    Several overlaps are drawn below each other; the axes returned are those of the first.
+
+    Raises InputError for a run on one section, and for a pantograph that did not run.
+    """
+    if not isinstance(run.catenary, Line) or "section_force" not in run.data:
+        raise InputError("the run is on one tension section: no force is handed over")
+    whole("pantograph", pantograph, least=0, most=run.data.sizes["pantograph"] - 1)
+    zones, forces = run.catenary.common_zones, run.data["section_force"].values[pantograph]
+    panels = [ax] if ax is not None else style.new_panels((11.0, 3.4 * len(zones)), [1] * len(zones))
+    for number, (panel, zone) in enumerate(zip(panels, zones, strict=False), start=1):
+        _draw_handover(panel, run, pantograph, forces, number, zone, filter)
+    return panels[0]
+
+
+def _draw_handover(
+    ax: Axes,
+    run: Run,
+    pantograph: int,
+    forces: np.ndarray,
+    number: int,
+    zone: tuple[float, float],
+    filter: FilterKind,
+) -> None:
+    x, colours = run.data["position"].values[pantograph], style.distinct(len(forces))
+    inside = (x >= zone[0]) & (x <= zone[1])
+    supports = run.data["support_position"].values
+    style.mark_supports(ax, supports[(supports >= zone[0] - 1e-6) & (supports <= zone[1] + 1e-6)])
+    for section in (number - 1, number):
+        ax.plot(
+            x[inside], forces[section][inside], color=colours[section], linewidth=1.0,
+            label=f"on section {section + 1}, unfiltered",
+        )  # fmt: skip
+    total = low_pass(run.data["contact_force"].values[pantograph], run.step, kind=filter)
+    ax.plot(x[inside], total[inside], color="black", linewidth=1.4, label="in all, 0 to 20 Hz")
+    ax.set_ylim(bottom=0.0)
+    style.headroom(ax, 0.18)
+    style.legend(ax, 3)
+    name = run.data["pantograph"].values[pantograph]
+    style.finish_run(ax, run, style.ALONG, "contact force (N)", f": overlap {number}, {name}")
 
 
 def _in_words(s: ForceStatistics | None) -> str:

@@ -12,10 +12,11 @@ from catenary_fe.layout import counted
 from catenary_fe.layout.arguments import checked
 from catenary_fe.results import Elasticity
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
-from catenary_fe.statics import Shape
+from catenary_fe.statics import HangingWire, LineShape, Shape
 from catenary_fe.views import style
 from catenary_fe.views.stretch import Stretch, evaluated_pair, frame, mark_detail, stretch
 
+RUN_OFF = 0.3  # [m] above the design line: higher wires run off to their anchors
 _LEFT = "#e6a07c"  # the left contact wire, of two
 
 
@@ -46,11 +47,13 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
     nominal = catenary.design_line
     frame(ax, part)
     style.mark_supports(ax, part.support_x)
-    names = ["contact wire"] if len(shape.contact_wires) == 1 else ["right contact wire", "left contact wire"]
-    for wire, name, colour in zip(shape.contact_wires, names, (style.CONTACT, _LEFT), strict=False):
+    for wire, name, colour in _contact_wires(shape):
         x = part.sampled(wire.x)
-        ax.plot(x, 1e3 * (wire.height(x) - nominal(x)), color=colour, linewidth=1.4, label=name)
+        height = wire.height(x) - nominal(x)
+        height[height > RUN_OFF] = np.nan
+        ax.plot(x, 1e3 * height, color=colour, linewidth=1.4, label=name)
     chosen = part.inside(catenary.dropper_positions)
+    chosen &= catenary.design_heights - nominal(catenary.dropper_positions) < RUN_OFF
     x = catenary.dropper_positions[chosen]
     design = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
@@ -65,6 +68,22 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
         if style.label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
     return _finished(ax, part, f"height above {above} (mm)", what)
+
+
+def _contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
+    """Each contact wire with its name and colour; those of the same side of all sections look alike."""
+    sides = len(shape.catenary.contact_wire_offsets)
+    names = ["right contact wire", "left contact wire"] if sides > 1 else ["contact wire"]
+    found = []
+    for number, wire in enumerate(shape.contact_wires):
+        if isinstance(shape, LineShape):
+            section = int(shape.joint.section[number]) + 1
+            found.append(
+                (wire, f"contact wire, section {section}", style.distinct(len(shape.sections))[section - 1])
+            )
+        else:
+            found.append((wire, names[number], (style.CONTACT, _LEFT)[number]))
+    return found
 
 
 def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:
@@ -92,7 +111,7 @@ def _finished(ax: Axes, part: Stretch, y: str, what: str) -> Axes:
 def _kinds(shape: Shape) -> list[tuple[str, str, np.ndarray]]:
     """Name, colour and mask of the droppers of each kind."""
     mesh = shape.mesh
-    if mesh.contact_wires > 1:
+    if len(shape.catenary.contact_wire_offsets) > 1 and not isinstance(shape, LineShape):
         right = mesh.lower.wire == 0
         return [("holds the right contact wire", style.CONTACT, right), ("holds the left one", _LEFT, ~right)]
     stitch = mesh.upper.wire >= mesh.first_stitch

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout import Line as SectionedLine
 from catenary_fe.layout.arguments import span_numbers
 from catenary_fe.statics import Shape
 from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, runs, wire_colour
@@ -17,6 +18,7 @@ from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, r
 Floats = NDArray[np.float64]
 CLOSE = 4  # spans that a picture can show with all their dimensions
 _WIDTHS = {"stitch wire": 1.2}  # others 1.6
+_KINDS = ("contact wire", "messenger wire", "stitch wire")
 
 
 @dataclass(frozen=True)
@@ -170,6 +172,7 @@ class Line:
     y: Floats
     z: Floats
     name: str
+    section: int = 0
 
     @property
     def colour(self) -> str:
@@ -182,14 +185,15 @@ class Line:
         return _WIDTHS.get(self.name, 1.6)
 
     def height(self, x: Floats) -> Floats:
-        """[m] at positions x [m] along the line."""
-        return np.asarray(np.interp(x, self.x, self.z))
+        """[m] at positions x [m] along the line, no number beyond the wire's ends."""
+        return np.asarray(np.interp(x, self.x, self.z, left=np.nan, right=np.nan))
 
 
 def hanging_lines(shape: Shape, part: Stretch) -> list[Line]:
     """All wires as they hang in a stretch, in the order of the mesh: cubic between the nodes."""
     lines = []
-    for wire, name in zip(shape.wires, _names(shape.catenary), strict=True):
+    for number, wire in enumerate(shape.wires):
+        name = shape.mesh.wire_name(number)
         x = part.sampled(wire.x)
         empty = np.array([])
         lines.append(
@@ -200,14 +204,31 @@ def hanging_lines(shape: Shape, part: Stretch) -> list[Line]:
 
 def sketched_lines(catenary: Catenary, part: Stretch) -> list[Line]:
     """Contact wires at design heights, messenger wire as parabolas, stitch wires straight."""
+    lines = []
+    for number, section, begin in sections_of(catenary):
+        for (at, high), name in zip(_sketch(section), _names(section), strict=True):
+            shown = part.sampled(at + begin)
+            lines.append(Line(shown, np.zeros_like(shown), np.interp(shown, at + begin, high), name, number))
+    return sorted(lines, key=lambda line: _KINDS.index(line.name))
+
+
+def sections_of(catenary: Catenary) -> list[tuple[int, Catenary, float]]:
+    """Number from 0, layout, and [m] where it begins, of each tension section."""
+    if not isinstance(catenary, SectionedLine):
+        return [(0, catenary, 0.0)]
+    numbers = range(len(catenary.sections))
+    return list(zip(numbers, catenary.sections, catenary.begins, strict=True))
+
+
+def _sketch(catenary: Catenary) -> list[tuple[Floats, Floats]]:
+    """[m], places and heights of each wire of a section."""
     supports, heights = catenary.support_positions, catenary.messenger_support_heights
     x = np.concatenate([supports, catenary.dropper_positions])
     z = np.concatenate([catenary.contact_wire_heights, catenary.design_heights])
     order = np.argsort(x)
     contact_wires = len(catenary.contact_wire_offsets)
     if catenary.messenger_wire is None:
-        shown, high = part.sampled(x[order]), np.interp(part.sampled(x[order]), x[order], z[order])
-        return [Line(shown, np.zeros_like(shown), high, name) for name in _names(catenary)]
+        return [(x[order], z[order])] * contact_wires
     mass = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
     along = np.unique(np.concatenate([np.linspace(0, catenary.length, 60 * len(catenary.spans)), supports]))
     span = np.clip(np.searchsorted(supports, along, side="right") - 1, 0, len(catenary.spans) - 1)
@@ -219,11 +240,7 @@ def sketched_lines(catenary: Catenary, part: Stretch) -> list[Line]:
         for middle in supports[list(catenary.stitched_supports)]:
             ends = middle + catenary.stitch_wire.length / 2 * np.array([-1.0, 1.0])
             points.append((ends, np.interp(ends, *messenger)))
-    lines = []
-    for (at, high), name in zip(points, _names(catenary), strict=True):
-        shown = part.sampled(at)
-        lines.append(Line(shown, np.zeros_like(shown), np.interp(shown, at, high), name))
-    return lines
+    return points
 
 
 def _names(catenary: Catenary) -> list[str]:
@@ -237,13 +254,27 @@ def upper_wires(catenary: Catenary, shape: Shape | None) -> NDArray[np.int64]:
     """Shape (droppers,): number of the wire that each dropper hangs on, in the order of the mesh."""
     if shape is not None:
         return shape.mesh.upper.wire
-    at = catenary.dropper_positions
-    wires = np.full(at.size, len(catenary.contact_wire_offsets))
-    if catenary.stitch_wire:
-        for i, support in enumerate(catenary.stitched_supports, start=1):
-            near = np.abs(catenary.support_positions[support] - at) < catenary.stitch_wire.length / 2
-            wires[near] = len(catenary.contact_wire_offsets) + i
-    return wires
+    wires = []
+    parts = sections_of(catenary)
+    kinds = [(_KINDS.index(name), n) for n, section, _ in parts for name in _names(section)]
+    place = np.argsort(sorted(range(len(kinds)), key=kinds.__getitem__))  # as sketched lines are sorted
+    first = 0
+    for _, section, _ in parts:
+        at, contact_wires = section.dropper_positions, len(section.contact_wire_offsets)
+        own = np.full(at.size, contact_wires)
+        for i, support in enumerate(section.stitched_supports, start=1):
+            assert section.stitch_wire is not None
+            near = np.abs(section.support_positions[support] - at) < section.stitch_wire.length / 2
+            own[near] = contact_wires + i
+        wires.append(place[first + own])
+        first += len(_names(section))
+    return np.concatenate(wires)
+
+
+def served_height(lines: Sequence[Line], x: Floats) -> Floats:
+    """[m], of the lowest contact wire at positions x [m] along the line."""
+    heights = [line.height(x) for line in lines if line.name == _KINDS[0] and line.x.size]
+    return np.asarray(np.fmin.reduce(heights))
 
 
 def draw_lines(ax: Axes, lines: list[Line], axis: str) -> None:

@@ -266,7 +266,8 @@ class Contacts:
     def _move(self, contact: ContactParts, position: float, speed: float) -> bool:
         """True if the contact is on another element than before."""
         mbs, path = self._mbs, self._paths[contact.wire]
-        e, share = path.locate(position)
+        self._set_on(contact, path.meets(position))
+        e, share = path.locate(float(np.clip(position, path.x[0], path.x[-1])))
         element, place = self._wires[contact.wire].elements[e], [share * float(path.lengths[e]), 0, 0]
         changed = self._element.get(contact.connector) != element
         if changed:
@@ -283,8 +284,19 @@ class Contacts:
             mbs.SetObjectParameter(contact.connector, "damping", damping)
         return changed
 
+    def _set_on(self, contact: ContactParts, on: bool) -> None:
+        """Beyond its wire's ends a contact does not act."""
+        if on != self.meets(contact):
+            self._mbs.SetObjectParameter(contact.connector, "activeConnector", on)
+
+    def meets(self, contact: ContactParts) -> bool:
+        """Whether the strip is between the ends of the wire."""
+        return bool(self._mbs.GetObjectParameter(contact.connector, "activeConnector"))
+
     def force(self, contact: ContactParts) -> float:
         """[N] upward on the wire at the current state."""
+        if not self.meets(contact):
+            return 0.0
         return float(self._mbs.GetObjectOutput(contact.connector, exu.OutputVariableType.Force)[self._up])
 
     def height(self, marker: int) -> float:

@@ -14,7 +14,7 @@ from catenary_fe.engines.checkpoint import Checkpoint
 from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
 from catenary_fe.engines.exudyn.solver import solve_dynamic, solve_static
 from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_steps
-from catenary_fe.engines.history import History, RunStopped
+from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import place
@@ -177,14 +177,15 @@ class _Recorder:
         self._model, self._case, self._step, self._contacts = model, case, time.step, model.contacts
         system, self._every = model.system, every[0]
         steps = case.steps(time.step)
-        count, n = len(model.pantographs), steps + 1
+        n = steps + 1
         self._times: Floats = np.arange(n, dtype=np.float64) * time.step
-        self._force, self._wire_height = np.zeros((count, n)), np.zeros((count, n))
+        self._forces = [np.zeros((len(parts.contacts), n)) for parts in model.pantographs]
+        self._heights = [np.full((len(parts.contacts), n), np.nan) for parts in model.pantographs]
         self._masses = [np.zeros((len(parts.masses), n)) for parts in model.pantographs]
         self._dropper = np.zeros((system.droppers.length.size, n))
         paths = system.contact_paths
-        self._support_index = np.array([path.index[path.supports, 0] for path in paths])
-        self._support = np.zeros((*self._support_index.shape, n))
+        self._support_index = np.concatenate([path.index[path.supports, 0] for path in paths])
+        self._support = np.zeros((self._support_index.size, n))
         self._wire: list[Floats] = []
         self._balance = _EnergyBalance(model, uplifts, steps, every[1]) if every[1] else None
         self._tension = TensionRecord(TensionGauge(system))
@@ -207,11 +208,12 @@ class _Recorder:
         nominal = system.contact_wire_height
         forces = [[contacts.force(c) for c in parts.contacts] for parts in model.pantographs]
         for i, parts in enumerate(model.pantographs):
-            self._force[i, n] = sum(forces[i])
-            heights = [contacts.height(contact.wire_marker) for contact in parts.contacts]
-            self._wire_height[i, n] = sum(heights) / len(heights) - nominal
+            self._forces[i][:, n] = forces[i]
+            for j, contact in enumerate(parts.contacts):
+                if contacts.meets(contact):
+                    self._heights[i][j, n] = contacts.height(contact.wire_marker) - nominal
             self._masses[i][:, n] = [contacts.height(marker) - nominal for marker in parts.masses]
-        self._support[:, :, n] = q[self._support_index]
+        self._support[:, n] = q[self._support_index]
         self._dropper[:, n] = [model.mbs.GetObjectOutput(d, _ALONG) for d in model.droppers]
         if self._every and n % self._every == 0:
             self._wire.append(q[system.heights])
@@ -232,7 +234,7 @@ class _Recorder:
         """A failed run in words: when, where, what is strained, what to do."""
         n, catenary = self.done, self._model.shape.catenary
         positions = self._positions(n)
-        forces = ", ".join(f"{f:.0f} N" for f in self._force[:, n])
+        forces = ", ".join(f"{f:.0f} N" for f in (own[:, n].sum() for own in self._forces))
         strained = most_strained(catenary, positions, self._dropper[:, n], self._dropper[:, 0])
         where = place_of_heads(catenary.support_positions, positions)
         return (
@@ -247,16 +249,19 @@ class _Recorder:
         system, case, time, balance = self._model.system, self._case, self._times, self._balance
         rest, stored = system.reference[system.heights], np.array(self._wire)
         parts = [slice(wire.first, wire.first + wire.x.size) for wire in system.wires]
-        profiles = np.array([path.profile[path.supports, 0] for path in system.contact_paths])
+        paths, pantographs = system.contact_paths, self._model.pantographs
+        profiles = np.concatenate([path.profile[path.supports, 0] for path in paths])
+        sections = [np.array([paths[c.wire].section for c in parts.contacts]) for parts in pantographs]
+        found = [of_contacts(*each) for each in zip(self._forces, self._heights, sections, strict=True)]
         nothing = np.array([])
         return History(
             time=time,
             position=case.start[:, None] + case.speed * time,
-            contact_force=self._force,
-            wire_height=self._wire_height,
+            contact_force=np.array([force for force, _, _ in found]),
+            wire_height=np.array([height for _, height, _ in found]),
             mass_heights=self._masses,
             dropper_force=self._dropper,
-            support_height=profiles[:, :, None] + self._support,
+            support_height=profiles[:, None] + self._support,
             wire_x=[wire.x for wire in system.wires],
             wire_z=[rest[part] + stored[:, part] for part in parts] if self._wire else [],
             wire_times=time[:: self._every] if self._wire else None,
@@ -267,6 +272,7 @@ class _Recorder:
             tension_change=self._tension.changes,
             tension_span=self._tension.spans,
             tension_times=self._tension.times,
+            section_force=section_forces(found),
             notes=tuple(self._note(at, parts) for at, parts in self._notes.items()),
         )
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.reduction import Gaps
+from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 
 Floats = NDArray[np.float64]
@@ -24,10 +25,11 @@ _REMEDY = "beyond that the force can be off by more than 3 % of σ: run again wi
 
 
 def tension_doubts(
-    catenary: Catenary, gaps: Gaps, change: Floats, changed: Integers, step: float
+    system: System, supports: Floats, gaps: Gaps, change: Floats, changed: Integers, step: float
 ) -> list[str]:
     """A warning where the tension of a wire changed by too much of the tension that carries there.
 
+    supports : [m], shape (spans + 1,), along the line
     change, changed : [N], shape (gaps,), largest change, and the time step at whose end it was
     step : [s]
 
@@ -36,16 +38,18 @@ def tension_doubts(
     is a share of its own tension, a messenger or stitch wire's one of contact and messenger wires' together.
     A stitch wire of 3.5 kN that changes by 9 % takes 300 N out of 48 kN: no force shows that.
     """
-    contact_wires = len(catenary.contact_wire_offsets)
-    own, together = catenary.contact_wire.tension, contact_wires * catenary.contact_wire.tension
-    touched = gaps.wire < contact_wires
-    together += catenary.messenger_wire.tension if catenary.messenger_wire else 0.0
-    carrying = np.where(touched, own, together)
+    wires = system.wires
+    own = np.array([wire.tension.max() for wire in wires])
+    section = np.array([wire.section for wire in wires])
+    whole = np.array([wire.supports.size > 0 for wire in wires])  # stitch wires are not
+    together = np.bincount(section[whole], own[whole])
+    touched = np.array([wire.contact for wire in wires])[gaps.wire]
+    carrying = np.where(touched, own[gaps.wire], together[section[gaps.wire]])
     share = change / carrying
     worst = int(share.argmax())
     if share[worst] <= TENSION_CHANGE:
         return []
-    where, when = _wire_at(catenary, gaps, worst), step * changed[worst]
+    where, when = _wire_at(system, supports, gaps, worst), step * changed[worst]
     whose = "its own" if touched[worst] else "that of contact and messenger wires together"
     return [
         f"linearised run: the tension of {where} changes by {change[worst]:.0f} N at {when:.2f} s,"
@@ -54,17 +58,16 @@ def tension_doubts(
     ]
 
 
-def _wire_at(catenary: Catenary, gaps: Gaps, gap: int) -> str:
+def _wire_at(system: System, supports: Floats, gaps: Gaps, gap: int) -> str:
     """A wire and a place on it in words."""
-    contact_wires, wire = len(catenary.contact_wire_offsets), int(gaps.wire[gap])
-    if wire > contact_wires:
-        return f"the stitch wire at support {catenary.stitched_supports[wire - contact_wires - 1] + 1}"
+    wire = system.wires[int(gaps.wire[gap])]
+    if not wire.supports.size:
+        return f"the {wire.name} at support {int(np.abs(supports - wire.x.mean()).argmin()) + 1}"
     begin, end = gaps.ends[gap]
-    name = "messenger wire"
-    if wire < contact_wires:
-        name = ["right contact wire", "left contact wire"][wire] if contact_wires > 1 else "contact wire"
-    span = int(np.searchsorted(catenary.support_positions, (begin + end) / 2))
-    return f"the {name} in span {span}, between {begin:.4g} and {end:.4g} m,"
+    twins = [w for w in system.wires if w.contact and w.section == wire.section] if wire.contact else []
+    side = ["right ", "left "][twins.index(wire)] if len(twins) > 1 else ""
+    span = int(np.searchsorted(supports, (begin + end) / 2))
+    return f"the {side}{wire.name} in span {span}, between {begin:.4g} and {end:.4g} m,"
 
 
 def slack_doubts(catenary: Catenary, shortening: Floats, shortened: Integers, step: float) -> list[str]:

@@ -14,7 +14,7 @@ from catenary_fe.fe.system import System
 from catenary_fe.layout import InputError, SolverError, counted
 from catenary_fe.layout.arguments import checked, number, whole
 from catenary_fe.results.modes import Modes, WireShapes
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 
 Floats = NDArray[np.float64]
 # above this share of all modes, and up to this size, a dense solver is quicker than Lanczos iterations
@@ -56,6 +56,11 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
         whole("modes: count", count, least=1)
     if below is not None:
         number("modes: below", below, "Hz", above=0.0, most=_HIGHEST)
+    if isinstance(shape, LineShape):
+        raise InputError(
+            f"modes: {shape.catenary.name} has {len(shape.sections)} tension sections, which do not move each"
+            " other; take the modes of one, of line.sections"
+        )
     _check_taut(shape)
     system = shape.system
     wanted = count or (40 if below is None else _expected(shape, below))

@@ -1,0 +1,381 @@
+"""A line of several tension sections, and the overlaps in which a pantograph changes from one to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+from math import sqrt
+from typing import Annotated, Any, Literal, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_serializer, model_validator
+
+from catenary_fe.layout.arguments import numbers
+from catenary_fe.layout.catenary import Catenary
+from catenary_fe.layout.equipment import Equipment
+from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.parameters import GRAVITY, NonNegative, Parameters, Positive, refuse
+from catenary_fe.layout.parts import Span, Support
+from catenary_fe.layout.rules import line_faults
+
+_DISTANCE = {"mechanical": 0.25, "insulated": 0.40}  # [m] 0.25, and 0.30 to 0.45 m (secondary source)
+_LIFT = 0.25  # [m] at least, up to 0.5 m (secondary source)
+_AWAY = 1.0  # [m] from the track's centre, where a wire is anchored: an assumption
+_SAME = 0.01  # [m] by which masts of two sections may differ
+FEWEST = 3  # spans of an overlap by the rule: both wires come, hand over, and go
+
+
+class Overlap(Parameters):
+    """The spans that two tension sections share.
+
+    By the rule the wires that run off are lifted at the last mast before their anchor and run on straight to
+    it; droppers are left out where the wire rises by itself. The two lines run side by side on the masts
+    between the anchors, in space at `distance`.
+    """
+
+    spans: Annotated[int, Field(strict=True, ge=1, le=12)] = 3
+    """shared by both sections, those of their anchors included"""
+    kind: Literal["mechanical", "insulated"] = "mechanical"
+    """an insulated one keeps a greater distance"""
+    lift: Positive | None = None
+    """[m] of the wires that run off, at the mast before their anchor; unset: 0.25 m"""
+    distance: NonNegative | None = None
+    """[m] between the two lines; unset: 0.25 m, insulated 0.40 m"""
+    anchor_stagger: Positive | None = None
+    """[m] from the track's centre of the wires at their anchors; unset: 1 m, an assumption"""
+    as_written: bool = False
+    """true: heights, staggers and droppers of both sections are as their spans and supports say"""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        given = [name for name in ("lift", "distance", "anchor_stagger") if getattr(self, name) is not None]
+        if self.as_written and given:
+            raise ValueError(
+                f"{given[0]} has no effect on an overlap that is as_written; leave one of them out"
+            )
+        if not self.as_written and self.spans < FEWEST:
+            raise ValueError(
+                f"spans = {self.spans}: an overlap by the rule takes at least {FEWEST}, one in which each"
+                " wire is anchored and one for both; take more, or write heights and staggers span by span"
+                " (as_written)"
+            )
+        return self
+
+    @property
+    def gap(self) -> float:
+        """[m] between the two lines."""
+        return _DISTANCE[self.kind] if self.distance is None else self.distance
+
+    @property
+    def handover(self) -> int:
+        """How many of the shared spans the first section serves."""
+        return (self.spans + 1) // 2
+
+
+class Place(NamedTuple):
+    """A place on a line: number of the section, from 0, and [m] along that section."""
+
+    section: int
+    x: float
+
+
+class Line(Catenary):
+    """Several tension sections in a row, each with its own wires, droppers and anchors.
+
+    As a catenary it is what pantographs run along: spans and supports are those of the section in service,
+    droppers those of all sections, one after the other.
+    """
+
+    sections: tuple[Catenary, ...]
+    """one after the other, as built: overlaps included"""
+    overlaps: tuple[Overlap, ...]
+    """between each section and the next"""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_service(cls, data: Any) -> Any:
+        """Fill in what follows from the sections."""
+        if not isinstance(data, dict) or "sections" not in data:
+            return data
+        sections = [s if isinstance(s, Catenary) else Catenary.model_validate(s) for s in data["sections"]]
+        overlaps = [o if isinstance(o, Overlap) else Overlap.model_validate(o) for o in data["overlaps"]]
+        if len(overlaps) != len(sections) - 1:
+            raise ValueError(
+                f"{counted(len(sections), 'section')} and {counted(len(overlaps), 'overlap')}: there must be"
+                " one between each section and the next"
+            )
+        refuse(_faults(sections, overlaps))
+        spans, supports = _served(sections, overlaps)
+        first = min(sections, key=lambda section: section.contact_wire.wave_speed)
+        common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
+        common["equipment"] = _equipment(sections, overlaps)
+        own = {name: data[name] for name in _OWN if name in data}
+        return (
+            common
+            | {"spans": spans, "supports": supports}
+            | own
+            | {"sections": sections, "overlaps": overlaps}
+        )
+
+    @model_validator(mode="after")
+    def _counts(self) -> Self:
+        refuse(line_faults(self))
+        return self
+
+    @model_serializer(mode="wrap")
+    def _sections_alone(self, handler: Any) -> Any:
+        return {name: value for name, value in handler(self).items() if name in _OWN}
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with other sections, overlaps, names or evaluated spans.
+
+        Raises InputError for what belongs to a section.
+        """
+        if other := [name for name in changes if name not in _OWN]:
+            raise InputError(f"{other[0]}: belongs to a tension section; replace it in line.sections")
+        return type(self)(**({name: getattr(self, name) for name in _OWN} | changes))
+
+    @cached_property
+    def begins(self) -> tuple[float, ...]:
+        """[m] along the line of each section's first support."""
+        found = [0.0]
+        for section, overlap in zip(self.sections, self.overlaps, strict=False):
+            found.append(found[-1] + float(section.support_positions[-1 - overlap.spans]))
+        return tuple(found)
+
+    @cached_property
+    def common_zones(self) -> tuple[tuple[float, float], ...]:
+        """[m] along the line, begin and end of each overlap: where there are wires of two sections."""
+        return tuple(
+            (begin, before + section.length)
+            for section, before, begin in zip(self.sections, self.begins, self.begins[1:], strict=False)
+        )
+
+    def located(self, x: float) -> Place:
+        """The section in service at a place [m] along the line, and the place on it."""
+        found = 0
+        for number, (overlap, begin) in enumerate(zip(self.overlaps, self.begins[1:], strict=True), start=1):
+            middle = self.sections[number].support_positions[overlap.spans] / 2
+            found = number if x > begin + middle else found
+        return Place(found, x - self.begins[found])
+
+    def _of_droppers(self, name: str) -> NDArray[Any]:
+        return np.concatenate([getattr(section, name) for section in self.sections])
+
+    @cached_property
+    def droppers(self) -> Any:
+        """All droppers, section by section."""
+        return tuple(dropper for section in self.sections for dropper in section.droppers)
+
+    @cached_property
+    def dropper_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line."""
+        parts = zip(self.sections, self.begins, strict=True)
+        return np.concatenate([section.dropper_positions + begin for section, begin in parts])
+
+    @cached_property
+    def dropper_spans(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of the line's span, from 1, that each dropper is in."""
+        return np.searchsorted(self.support_positions, self.dropper_positions).astype(np.int64)
+
+    @cached_property
+    def dropper_contact_wires(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of the contact wire, from 0, among those of all sections."""
+        counts = [len(section.contact_wire_offsets) for section in self.sections]
+        first = np.cumsum([0, *counts])
+        return np.concatenate(
+            [s.dropper_contact_wires + n for s, n in zip(self.sections, first, strict=False)]
+        )
+
+    @cached_property
+    def design_heights(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
+        return self._of_droppers("design_heights")
+
+    @property
+    def leaves_the_plane(self) -> bool:
+        """Whether stagger, curves or links lie outside the vertical plane."""
+        return any(section.is_spatial for section in self.sections)
+
+    def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
+        left = iter(lengths)
+        sections = [s._with_lengths([next(left) for _ in s.droppers]) for s in self.sections]
+        return self.replace(sections=tuple(sections))
+
+    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
+        """The same line with these stress-free dropper lengths [m], shape (droppers,), section by section."""
+        return self._with_lengths(numbers("lengths", lengths, shape=(len(self.droppers),)).tolist())
+
+    def planar(self) -> Self:
+        """The same line in the vertical plane, section by section."""
+        return self.replace(sections=tuple(section.planar() for section in self.sections))
+
+    def mirrored(self) -> Self:
+        """The mirror image: x runs the other way, left stays left."""
+        n = len(self.spans)
+        evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
+        return self.replace(
+            sections=tuple(section.mirrored() for section in reversed(self.sections)),
+            overlaps=self.overlaps[::-1],
+            evaluated_spans=evaluated,
+        )
+
+
+_OWN = ("name", "source", "sections", "overlaps", "evaluated_spans")
+
+
+def joined(
+    sections: Sequence[Catenary],
+    overlaps: Sequence[Overlap],
+    *,
+    name: str = "",
+    source: str = "",
+    **others: Any,
+) -> Line:
+    """A line of tension sections that meet in overlaps by the rule, where these are not as written.
+
+    sections : each with the spans that it shares with its neighbours
+    overlaps : between each section and the next
+    others : further fields of :class:`Line`: evaluated_spans
+
+    Raises InputError where two sections do not fit in their overlap.
+    """
+    made = list(sections)
+    if len(overlaps) != len(made) - 1:
+        raise InputError(
+            f"{counted(len(made), 'section')} and {counted(len(overlaps), 'overlap')}: there must be one"
+            " between each section and the next"
+        )
+    if any(section.is_spatial for section in made):
+        made = [section.replace(spatial=True) for section in made]
+    for n, overlap in enumerate(overlaps, start=1):
+        for section in made[n - 1 : n + 1]:
+            if overlap.spans >= len(section.spans):
+                raise InputError(
+                    f"overlap {n} of {overlap.spans} spans: {section.name!r} has {len(section.spans)} spans;"
+                    " add spans, or take a shorter overlap"
+                )
+        if overlap.as_written:
+            continue
+        try:
+            side = -1.0 if made[n - 1].supports[-1 - overlap.spans].stagger > 0 else 1.0
+            made[n - 1] = _run_off(made[n - 1], overlap, side, side)
+            made[n] = _run_off(made[n].mirrored(), overlap, -side, side * (-1) ** overlap.spans).mirrored()
+        except InputError as error:
+            raise InputError(*(f"overlap {n}: {line}" for line in error.problems)) from None
+    return Line(
+        name=name or made[0].name, source=source or made[0].source,
+        sections=tuple(made), overlaps=tuple(overlaps), **others,
+    )  # fmt: skip
+
+
+def _run_off(section: Catenary, overlap: Overlap, side: float, turn: float) -> Catenary:
+    """A section whose wires run off at its end.
+
+    side : 1 where its line lies to the left of the other one in the overlap, else -1
+    turn : likewise of both lines at the first mast between the anchors; they change sides from mast to mast
+    """
+    lift = _LIFT if overlap.lift is None else overlap.lift
+    supports, spans, n = list(section.supports), list(section.spans), overlap.spans
+    wire, last = section.contact_wire, spans[-1].length
+    curvature = GRAVITY * wire.mass_per_length / wire.tension
+    slope = sqrt(2 * lift * curvature)
+    heights = section.contact_wire_heights
+    spans[-2] = _rising(spans[-2], lift, slope / curvature, len(section.spans) - 1)
+    spans[-1] = spans[-1].replace(pre_sag=0.0)
+    lifted = {-2: lift, -1: lift + slope * last}
+    for i, up in lifted.items():
+        supports[i] = supports[i].replace(contact_wire_height=float(heights[i]) + up, stitch_wire=False)
+    if section.is_spatial:
+        for i in range(1, n):
+            zigzag = turn * (-1) ** (i - 1)
+            supports[-1 - n + i] = supports[-1 - n + i].replace(
+                stagger=overlap.gap / 2 * (side + zigzag), messenger_stagger=overlap.gap / 2 * side
+            )
+        away = side * (_AWAY if overlap.anchor_stagger is None else overlap.anchor_stagger)
+        supports[-1] = supports[-1].replace(stagger=away, messenger_stagger=away)
+    return section.replace(spans=tuple(spans), supports=tuple(supports))
+
+
+def _rising(span: Span, lift: float, rise: float, number: int) -> Span:
+    """A span at whose end the contact wire rises by itself, over a length [m]; it has no droppers there."""
+    level = span.length - rise
+    kept = [d for d in span.droppers if d.position <= level]
+    if not kept:
+        raise InputError(
+            f"span {number}: a contact wire that rises by itself to a lift of {lift:g} m takes {rise:.1f} m"
+            f" for that, which leaves no dropper in a span of {span.length:g} m; take a smaller lift or a"
+            " longer span"
+        )
+    offsets = span.height_offsets()
+    droppers = tuple(
+        d.replace(height_offset=float(offset) - lift * d.position / span.length)
+        for d, offset in zip(span.droppers, offsets, strict=True)
+        if d.position <= level
+    )
+    return span.replace(droppers=droppers, pre_sag=0.0)
+
+
+def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[str]:
+    """One line for each way in which sections do not fit together."""
+    found = []
+    for name, rule in (
+        ("contact_wire_height", "the nominal height, from which pantographs count"),
+        ("damping", "one for the line"),
+        ("is_spatial", "in space or in the vertical plane, all alike"),
+    ):
+        values = [getattr(section, name) for section in sections]
+        if any(value != values[0] for value in values):
+            found.append(f"sections: {name} differs between them; it must be {rule}")
+    if len({section.messenger_wire is None for section in sections}) > 1:
+        found.append("sections: some have a messenger_wire and others none; give all one, or none of them")
+    for n, (overlap, (a, b)) in enumerate(zip(overlaps, pairwise(sections), strict=True), start=1):
+        shared = overlap.spans
+        if shared >= min(len(a.spans), len(b.spans)):
+            found.append(
+                f"overlap {n} of {shared} spans: its sections have {len(a.spans)} and {len(b.spans)} spans;"
+                " add spans, or take a shorter overlap"
+            )
+            continue
+        for i, (one, other) in enumerate(zip(a.spans[-shared:], b.spans[:shared], strict=True), start=1):
+            where = f"overlap {n}: shared span {i}"
+            if abs(one.length - other.length) > _SAME:
+                found.append(
+                    f"{where} is {one.length:g} m in the section before and {other.length:g} m in the one"
+                    " behind; they stand on the same masts: make them equal"
+                )
+            if one.curvature != other.curvature:
+                found.append(f"{where}: curve_radius differs between the two sections; the track is the same")
+    return found
+
+
+def _equipment(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> tuple[Equipment, ...]:
+    """That of all sections, by its place along the line."""
+    found, begin = [], 0.0
+    for section, overlap in zip(sections, [*overlaps, None], strict=True):
+        for item in section.equipment:
+            found.append(item.replace(x=begin + item.middle(section), span=None, position=None))
+        begin += float(section.support_positions[-1 - overlap.spans]) if overlap else 0.0
+    return tuple(found)
+
+
+def _served(
+    sections: Sequence[Catenary], overlaps: Sequence[Overlap]
+) -> tuple[tuple[Span, ...], tuple[Support, ...]]:
+    """Spans and supports of the section that pantographs run along."""
+    spans: list[Span] = []
+    supports: list[Support] = []
+    begin = 0
+    for section, overlap in zip(sections, [*overlaps, None], strict=True):
+        end = len(section.spans) if overlap is None else len(section.spans) - overlap.spans + overlap.handover
+        spans += section.spans[begin:end]
+        supports += section.supports[begin:end]
+        begin = 0 if overlap is None else overlap.handover
+    return tuple(spans), (*supports, sections[-1].supports[-1])
+
+
+def read_catenary(record: dict[str, Any]) -> Catenary:
+    """A catenary, or a line of several sections, as :meth:`model_dump` wrote it."""
+    return (Line if "sections" in record else Catenary).model_validate(record)
