@@ -166,6 +166,8 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the section's spans; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -173,7 +175,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = self.model_fields_set - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -219,6 +221,8 @@ class LayoutFile(Parameters):
     """[m] between messenger wire and contact wire at the supports"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
@@ -321,6 +325,7 @@ class LayoutFile(Parameters):
             droppers=droppers,
             pre_sag=entry.pre_sag,
             curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+            curve_radius_end=entry.curve_radius_end,
         )
 
 

@@ -324,6 +324,7 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
     for name, rule in (
         ("contact_wire_height", "the nominal height, from which pantographs count"),
         ("damping", "one for the line"),
+        ("cant_base", "one for the line"),
         ("is_spatial", "in space or in the vertical plane, all alike"),
     ):
         values = [getattr(section, name) for section in sections]
@@ -346,8 +347,10 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
                     f"{where} is {one.length:g} m in the section before and {other.length:g} m in the one"
                     " behind; they stand on the same masts: make them equal"
                 )
-            if one.curvature != other.curvature:
+            if one.curvatures != other.curvatures:
                 found.append(f"{where}: curve_radius differs between the two sections; the track is the same")
+        if [s.cant for s in a.supports[-1 - shared :]] != [s.cant for s in b.supports[: shared + 1]]:
+            found.append(f"overlap {n}: cant differs between the two sections; the track is the same")
     return found
 
 
