@@ -14,7 +14,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.line import Overlap, joined
+from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
     Lateral,
@@ -254,7 +254,7 @@ class LayoutFile(Parameters):
             overlaps += [entry.overlap or self.overlap or Overlap()] * entry.count
         if faults:
             raise InputError(*faults)
-        return joined(
+        return join_sections(
             sections, overlaps, name=self.name, source=self.source, evaluated_spans=self.evaluated_spans
         )
 

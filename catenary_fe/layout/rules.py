@@ -111,6 +111,8 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
 
 def dropper_names(catenary: Catenary) -> list[str]:
     """Shape (droppers,): each dropper's name in errors."""
+    if sections := getattr(catenary, "sections", ()):
+        return [f"section {n}: {name}" for n, s in enumerate(sections, start=1) for name in dropper_names(s)]
     return [
         f"span {i}: dropper {number} at {dropper.position:g} m"
         for i, span in enumerate(catenary.spans, start=1)

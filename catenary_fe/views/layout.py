@@ -43,7 +43,9 @@ def plot_layout(
 
     if to_scale and not spans:
         spans = stretch.evaluated_pair(catenary).spans
-    return stretch.draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
+    return stretch.draw_line(
+        catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4), stretch.overlap_spans(catenary)
+    )
 
 
 def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) -> None:
@@ -52,6 +54,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     contact = [line for line in lines if line.name == "contact wire"]
     low = min(float(line.z.min()) for line in contact) - _BELOW
     top = float(catenary.messenger_support_heights[part.supports].max())
+    top = max([top, *(float(line.z.max()) for line in lines if line.z.size)])
     high = top + (0.1 if to_scale else 0.32) * (top - low)
     ax.set_ylim(low, high)
     stretch.frame(ax, part)
@@ -163,7 +166,8 @@ def plot_plan(
         _draw_plan(ax, part, shape, head_width)
 
     curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if any(span.curvatures)]
-    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), curved)
+    among = stretch.overlap_spans(shape.catenary) or curved
+    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), among)
 
 
 def head_width(pantographs: Iterable[AnyPantograph]) -> float:

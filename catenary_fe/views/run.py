@@ -82,9 +82,12 @@ def plot_handover(
         raise InputError("the run is on one tension section: no force is handed over")
     whole("pantograph", pantograph, least=0, most=run.data.sizes["pantograph"] - 1)
     zones, forces = run.catenary.common_zones, run.data["section_force"].values[pantograph]
-    panels = [ax] if ax is not None else style.new_panels((11.0, 3.4 * len(zones)), [1] * len(zones))
-    for number, (panel, zone) in enumerate(zip(panels, zones, strict=False), start=1):
-        _draw_handover(panel, run, pantograph, forces, number, zone, filter)
+    if ax is not None or len(zones) == 1:
+        panels = [style.new_axes(ax, (11.0, 3.6))]
+    else:
+        panels = style.new_panels((11.0, 3.4 * len(zones)), [1] * len(zones))
+    for overlap, (panel, zone) in enumerate(zip(panels, zones, strict=False), start=1):
+        _draw_handover(panel, run, pantograph, forces, overlap, zone, filter)
     return panels[0]
 
 

@@ -72,8 +72,8 @@ def test_the_mirror_image_of_transition_and_cant():
 def test_cant_that_rises_bends_the_way_of_the_pantograph():
     """The head's centre swings by h·cant/1.5 m; arms take T times the change of its direction.
 
-    The droppers are plumb, below a messenger wire that follows: of the weight that the lean of the track makes
-    a lateral one, an arm has the part that it carries anyway.
+    The droppers are plumb, below a messenger wire that follows: of the weight that the lean of the track
+    makes a lateral one, an arm has the part that it carries anyway.
     """
     catenary = line(cants=CANTS, messenger_stagger="follows")
     way = 5.3 * np.array(CANTS) / 1.5
