@@ -250,7 +250,8 @@ def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
     for i, support in enumerate(catenary.supports, start=1):
         for name in names:
             if value := getattr(support, name):
-                yield name, f"support {i}: {name} = {value} has no effect without a messenger_wire"
+                shown = value if isinstance(value, str) else f"{value:g}"
+                yield name, f"support {i}: {name} = {shown} has no effect without a messenger_wire"
 
 
 def _anchored(catenary: Catenary) -> list[str]:
