@@ -89,7 +89,8 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
     lengths = [span.length for span in catenary.spans]
     clamps = sum(d.messenger_clamp_mass + d.contact_wire_clamp_mass for d in catenary.droppers)
     contact_wires = len(catenary.contact_wire_offsets)
-    line = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
+    line = contact_wires * catenary.contact_wire.mass_per_length
+    line += catenary.messenger_wire.mass_per_length if catenary.messenger_wire else 0.0
     if catenary.stitch_wire:
         stitch = catenary.stitch_wire
         clamps += 2 * len(catenary.stitched_supports) * stitch.clamp_mass
@@ -108,12 +109,13 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "largest_stagger_m": float(np.abs(catenary.staggers).max()),
         "largest_lateral_pull_N": float(np.abs(catenary.lateral_pulls).max()),
         "wires_along_the_track": ends_in_words(catenary),
-        "system_height_m": catenary.system_height,
+        "system_height_m": catenary.system_height if catenary.messenger_wire else None,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
         "largest_speed_by_wave_speed_kmh": 3.6 * WAVE_SPEED_SHARE * catenary.contact_wire.wave_speed,
         "mass_of_wires_kg": line * catenary.length,
         "mass_of_clamps_kg": clamps,
+        "mass_of_equipment_kg": sum(item.mass for item in catenary.equipment),
         "evaluated_spans": list(catenary.spans_to_evaluate),
     }
 

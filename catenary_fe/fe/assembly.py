@@ -24,7 +24,9 @@ from catenary_fe.fe.installation import (
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
+from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout.equipment import stations
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -55,7 +57,10 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
     force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
     if axes == 3:
         pulls = np.concatenate(curve_pulls(catenary, mesh))[:, None, None]
-        force += scattered([(index, blocks * pulls)], size) @ np.roll(ups, -1, axis=1).ravel()
+        lefts = np.roll(ups, -1, axis=1)
+        force += scattered([(index, blocks * pulls)], size) @ lefts.ravel()
+        at_nodes = cant_forces(catenary, mesh) + leaning_weights(catenary, mesh, hanging)
+        force += (at_nodes[:, None] * lefts).ravel()
     held = _Restraints(catenary, mesh, installation, size)
     return System(
         axes=axes,
@@ -92,6 +97,7 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
         clamps += [wire.supports, np.array([0, wire.x.size - 1])]
         if n == mesh.contact_wires:
             clamps.append(mesh.stitch_ends.ravel())
+        clamps.append(np.searchsorted(wire.x, np.array(stations(catenary, mesh.wire_name(n))) - 1e-6))
         fixed = np.unique(np.concatenate(clamps))
         contact = n < mesh.contact_wires
         found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))
@@ -205,6 +211,8 @@ class _Restraints:
 
     def _supports(self) -> None:
         last, up, wire = len(self.catenary.supports) - 1, self.axes - 1, self.mesh.contact_wires
+        if self.mesh.messenger is None:
+            return
         for i, support in enumerate(self.catenary.supports):
             node = int(self.mesh.messenger.supports[i])
             springs = {up: (support.messenger_stiffness, support.messenger_damping)}

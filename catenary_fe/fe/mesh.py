@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import Catenary, InputError
 from catenary_fe.layout.arguments import number
+from catenary_fe.layout.equipment import stations
 from catenary_fe.layout.parameters import changed_by_copy
 
 Floats = NDArray[np.float64]
@@ -86,13 +87,13 @@ class Clamps:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Meshes of all wires of a catenary: contact wires, then the messenger wire, then stitch wires.
+    """Meshes of all wires of a catenary: contact wires, then the messenger wire if any, then stitch wires.
 
     contact_wires : how many there are
     lower, upper : where the droppers are clamped, below on a contact wire, above on the messenger or a
         stitch wire
     stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
-    messengers : how many messenger wires there are: one a tension section
+    messengers : how many messenger wires there are: one a tension section, or none
     """
 
     wires: tuple[WireMesh, ...]
@@ -108,9 +109,9 @@ class Mesh:
         return self.wires[0]
 
     @property
-    def messenger(self) -> WireMesh:
-        """The messenger wire."""
-        return self.wires[self.contact_wires]
+    def messenger(self) -> WireMesh | None:
+        """The messenger wire; None without one."""
+        return self.wires[self.contact_wires] if self.messengers else None
 
     @property
     def first_stitch(self) -> int:
@@ -147,12 +148,14 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     for i, (middle, half) in enumerate(zip(middles, halves, strict=True)):
         above[np.abs(at - middle) < half - _CLAMP_ROOM] = contact_wires + 1 + i
     ends = np.stack([middles - halves, middles + halves], axis=1)
+    extra = stations(catenary, "contact wire")
     lines = [
-        _line_mesh(catenary, at[below == i], settings, settings.contact_wire_element)
+        _line_mesh(catenary, np.append(at[below == i], extra), settings, settings.contact_wire_element)
         for i in range(contact_wires)
     ]
-    hangers = np.concatenate([at[above == contact_wires], ends.ravel()])
-    lines.append(_line_mesh(catenary, hangers, settings, settings.messenger_wire_element))
+    hangers = [at[above == contact_wires], ends.ravel(), stations(catenary, "messenger wire")]
+    if catenary.messenger_wire:
+        lines.append(_line_mesh(catenary, np.concatenate(hangers), settings, settings.messenger_wire_element))
     for i, pair in enumerate(ends):
         on_it = at[above == contact_wires + 1 + i]
         x = _stations(np.concatenate([pair, on_it]), settings, settings.messenger_wire_element)
@@ -162,7 +165,8 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
         contact_wires=contact_wires,
         lower=_clamps(lines, below, at),
         upper=_clamps(lines, above, at),
-        stitch_ends=np.searchsorted(lines[contact_wires].x, ends - _ROUNDING),
+        stitch_ends=np.searchsorted(lines[-1 if not ends.size else contact_wires].x, ends - _ROUNDING),
+        messengers=1 if catenary.messenger_wire else 0,
     )
 
 

@@ -4,6 +4,7 @@ from catenary_fe.layout import library
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
@@ -43,6 +44,7 @@ __all__ = [
     "DescribedPantograph",
     "Dropper",
     "ElasticPantograph",
+    "Equipment",
     "InputError",
     "Line",
     "Overlap",

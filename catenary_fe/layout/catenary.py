@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import (
     GRAVITY,
@@ -24,6 +25,7 @@ from catenary_fe.layout.parameters import (
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
+from catenary_fe.layout.track import messenger_staggers, support_bends
 
 Loss = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, lt=0.1)]
 
@@ -71,8 +73,9 @@ class Catenary(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: Wire
     """the wire that the pantograph touches"""
-    messenger_wire: Wire
-    """the wire that carries the droppers"""
+    messenger_wire: Wire | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWire | None = None
@@ -93,6 +96,10 @@ class Catenary(Parameters):
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
@@ -119,7 +126,7 @@ class Catenary(Parameters):
         span_length: float,
         droppers: Sequence[Dropper],
         contact_wire: Wire,
-        messenger_wire: Wire,
+        messenger_wire: Wire | None = None,
         support: Support,
         pre_sag: float = 0.0,
         stagger: float = 0.0,
@@ -243,17 +250,22 @@ class Catenary(Parameters):
 
     @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
-        """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
+        """[m], shape (spans + 1,): height of the installed messenger wire at the supports.
+
+        Without one, of the contact wire.
+        """
         heights = [s.system_height or self.system_height for s in self.supports]
+        if self.messenger_wire is None:
+            return self.contact_wire_heights
         above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
         return above
 
     @property
     def leaves_the_plane(self) -> bool:
         """Whether stagger, curves or links lie outside the vertical plane."""
-        return any(span.curve_radius for span in self.spans) or any(
-            s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
-            for s in self.supports
+        return any(any(span.curvatures) for span in self.spans) or any(
+            s.stagger or y or s.cant or (s.steady_arm and s.steady_arm.length is not None)
+            for s, y in zip(self.supports, self.messenger_staggers.tolist(), strict=True)
         )
 
     @property
@@ -300,17 +312,17 @@ class Catenary(Parameters):
         return np.array([support.stagger for support in self.supports])
 
     @_fixed_array
+    def messenger_staggers(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): likewise of the messenger wire; of one that follows, where that is."""
+        return messenger_staggers(self)
+
+    @_fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
-        """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
+        """[N], shape (spans + 1,): force to the left with which stagger, curves, cant pull on the supports.
 
         Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
         """
-        lengths = np.array([span.length for span in self.spans])
-        direction = np.diff(self.staggers) / lengths
-        bend = lengths * np.array([span.curvature for span in self.spans]) / 2
-        pulls = np.zeros(len(self.supports))
-        pulls[1:-1] = np.diff(direction) + bend[:-1] + bend[1:]
-        return self.contact_wire.tension * len(self.contact_wire_offsets) * pulls
+        return self.contact_wire.tension * len(self.contact_wire_offsets) * support_bends(self)
 
     def tension_shares(self, wire: Literal["contact_wire", "messenger_wire"]) -> NDArray[np.float64]:
         """Shape (spans,): share of its nominal tension that a wire has in each span.
@@ -328,7 +340,7 @@ class Catenary(Parameters):
         return shares if any(tensioned) else np.ones(n)
 
     def planar(self) -> Self:
-        """The same line in the vertical plane: no stagger, no curves, links as springs.
+        """The same line in the vertical plane: no stagger, curves and cant, links as springs.
 
         A link under the lateral force H acts in the plane like a vertical spring of H over its length.
 
@@ -340,13 +352,14 @@ class Catenary(Parameters):
             s.replace(
                 stagger=0.0,
                 messenger_stagger=0.0,
+                cant=0.0,
                 messenger_lateral_stiffness=None,
                 messenger_lateral_damping=0.0,
                 steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
             )
             for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
         )
-        spans = tuple(span.replace(curve_radius=None) for span in self.spans)
+        spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in self.spans)
         return self.replace(spans=spans, supports=supports, spatial=False)
 
     @property
@@ -371,17 +384,25 @@ class Catenary(Parameters):
                 )
                 for d in span.droppers
             ]
-            spans.append(span.replace(droppers=tuple(reversed(images))))
+            spans.append(_turned(span).replace(droppers=tuple(reversed(images))))
         n = len(self.spans)
         evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
         return self.replace(
             spans=tuple(reversed(spans)),
             supports=self.supports[::-1],
-            evaluated_spans=evaluated,
             begin=self.end,
             end=self.begin,
             midpoint=self.midpoint and n + 2 - self.midpoint,
+            equipment=tuple(item.mirrored(self) for item in self.equipment),
+            evaluated_spans=evaluated,
         )
+
+
+def _turned(span: Span) -> Span:
+    """The span with its track seen from its other end."""
+    if span.curve_radius_end is None:
+        return span
+    return span.replace(curve_radius=span.curve_radius_end, curve_radius_end=span.curve_radius or 0.0)
 
 
 def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:

@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, Loss, RayleighDamping
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
@@ -171,6 +172,8 @@ class SectionEntry(Parameters):
     """what holds the wires along the track at the section's last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from the section's first one, that holds the wires along the track"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the section's spans; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -178,7 +181,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = self.model_fields_set - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -198,8 +201,9 @@ class LayoutFile(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: WireEntry
     """the wire that the pantograph touches"""
-    messenger_wire: WireEntry
-    """the wire that carries the droppers"""
+    messenger_wire: WireEntry | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWireEntry | None = None
@@ -229,6 +233,10 @@ class LayoutFile(Parameters):
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
@@ -273,7 +281,7 @@ class LayoutFile(Parameters):
         try:
             catenary = Catenary(
                 contact_wire=self.contact_wire.wire(),
-                messenger_wire=self.messenger_wire.wire(),
+                messenger_wire=self.messenger_wire and self.messenger_wire.wire(),
                 stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
                 spans=spans,
                 supports=supports,
@@ -331,6 +339,7 @@ class LayoutFile(Parameters):
             droppers=droppers,
             pre_sag=entry.pre_sag,
             curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+            curve_radius_end=entry.curve_radius_end,
         )
 
 

@@ -14,6 +14,7 @@ from pydantic import Field, model_serializer, model_validator
 
 from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.catenary import Catenary
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import GRAVITY, NonNegative, Parameters, Positive, refuse
 from catenary_fe.layout.parts import Span, Support
@@ -97,6 +98,7 @@ class Line(Catenary):
         spans, supports = _served(sections, overlaps)
         first = min(sections, key=lambda section: section.contact_wire.wave_speed)
         common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
+        common["equipment"] = _equipment(sections, overlaps)
         own = {name: data[name] for name in _OWN if name in data}
         return (
             common
@@ -302,11 +304,14 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
     for name, rule in (
         ("contact_wire_height", "the nominal height, from which pantographs count"),
         ("damping", "one for the line"),
+        ("cant_base", "one for the line"),
         ("is_spatial", "in space or in the vertical plane, all alike"),
     ):
         values = [getattr(section, name) for section in sections]
         if any(value != values[0] for value in values):
             found.append(f"sections: {name} differs between them; it must be {rule}")
+    if len({section.messenger_wire is None for section in sections}) > 1:
+        found.append("sections: some have a messenger_wire and others none; give all one, or none of them")
     for n, (overlap, (a, b)) in enumerate(zip(overlaps, pairwise(sections), strict=True), start=1):
         shared = overlap.spans
         if shared >= min(len(a.spans), len(b.spans)):
@@ -322,9 +327,21 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
                     f"{where} is {one.length:g} m in the section before and {other.length:g} m in the one"
                     " behind; they stand on the same masts: make them equal"
                 )
-            if one.curvature != other.curvature:
+            if one.curvatures != other.curvatures:
                 found.append(f"{where}: curve_radius differs between the two sections; the track is the same")
+        if [s.cant for s in a.supports[-1 - shared :]] != [s.cant for s in b.supports[: shared + 1]]:
+            found.append(f"overlap {n}: cant differs between the two sections; the track is the same")
     return found
+
+
+def _equipment(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> tuple[Equipment, ...]:
+    """That of all sections, by its place along the line."""
+    found, begin = [], 0.0
+    for section, overlap in zip(sections, [*overlaps, None], strict=True):
+        for item in section.equipment:
+            found.append(item.replace(x=begin + item.middle(section), span=None, position=None))
+        begin += float(section.support_positions[-1 - overlap.spans]) if overlap else 0.0
+    return tuple(found)
 
 
 def _served(

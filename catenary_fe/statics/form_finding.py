@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.assembly import balanced
 from catenary_fe.fe.cable import scattered
-from catenary_fe.fe.installation import Installation, curve_pulls
+from catenary_fe.fe.equipment import lumped
+from catenary_fe.fe.installation import Installation, curve_pulls, point_masses
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary, InputError, Line, SolverError, SteadyArm
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.rules import check_lengths, dropper_names
@@ -54,6 +56,7 @@ class WireSubstructures:
         self.stiffness = np.array([d.stiffness for d in droppers], dtype=float)
         self.found = np.zeros((self.axes - 1, 2 * self.wires.nodes))
         self.pull, self._half_weight = np.zeros(len(droppers)), np.zeros(len(droppers))
+        self._lengths = np.zeros(len(droppers))
         self._lower = self.wires.dof[self.mesh.nodes(self.mesh.lower)]
         self._upper = self.wires.dof[self.mesh.nodes(self.mesh.upper)]
         self.reactions = np.zeros_like(self.found)
@@ -67,7 +70,7 @@ class WireSubstructures:
     def set_dropper_weights(self, lengths: Floats) -> None:
         """Lengths [m] of the droppers, of which their weight comes."""
         per_length = np.array([d.mass_per_length for d in self.catenary.droppers])
-        self._half_weight = GRAVITY * per_length * lengths / 2
+        self._half_weight, self._lengths = GRAVITY * per_length * lengths / 2, lengths
 
     def _clamps(self, which: str) -> Floats:
         """[N], shape (droppers,): weight at one end of the droppers."""
@@ -117,9 +120,20 @@ class WireSubstructures:
                 force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_heights[i]
             elif not arm.holds_height:
                 force[at] += self._lift(at, arm)
+        nodes, masses = lumped(self.catenary, self.mesh)
+        np.add.at(force, self.wires.dof[nodes], -GRAVITY * masses)
         if self.catenary.stitch_wire:
             clamps = self.mesh.first_nodes[self.mesh.contact_wires] + self.mesh.stitch_ends.ravel()
             np.add.at(force, clamps, -GRAVITY * self.catenary.stitch_wire.clamp_mass)
+        return force
+
+    def _lateral_loads(self) -> Floats:
+        """[N], shape (2 * nodes,), to the left: of curves and cant on the wires and what they carry."""
+        mesh, catenary = self.mesh, self.catenary
+        force = self.wires.load(self._distributed_loads()[0])
+        masses = point_masses(catenary, mesh, self._lengths)[1]
+        at_nodes = cant_forces(catenary, mesh) + leaning_weights(catenary, mesh, masses)
+        np.add.at(force, self.wires.dof, at_nodes)
         return force
 
     # what holds
@@ -132,15 +146,17 @@ class WireSubstructures:
         for wire in range(self.mesh.contact_wires):
             held |= {self._at_support(wire, i): heights[i] for i in (0, last)}
         held |= {at: heights[i] for _, i, at, arm in self._arms() if arm.holds_height}
-        for i, height in enumerate(catenary.messenger_support_heights.tolist()):
-            held[self._at_support(self.mesh.contact_wires, i)] = height
+        if self.mesh.messenger:
+            for i, height in enumerate(catenary.messenger_support_heights.tolist()):
+                held[self._at_support(self.mesh.contact_wires, i)] = height
         return held
 
     def _fixed_lateral(self) -> Fixed:
         """Lateral positions [m] that masts hold, by displacement."""
         catenary, held, last = self.catenary, {}, len(self.catenary.supports) - 1
         for i, support in enumerate(catenary.supports):
-            held[self._at_support(self.mesh.contact_wires, i)] = support.messenger_stagger
+            if self.mesh.messenger:
+                held[self._at_support(self.mesh.contact_wires, i)] = float(catenary.messenger_staggers[i])
             if not (support.steady_arm or i in (0, last)):
                 continue
             for wire, offset in enumerate(catenary.contact_wire_offsets):
@@ -185,14 +201,16 @@ class WireSubstructures:
         blocks = righting[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
         leaning = scattered([(index, blocks)], 2 * self.wires.nodes)
         problem = self.wires.problem(self._fixed_lateral(), leaning)
-        self.found[0], self.reactions[0] = problem.solve(self.wires.load(self._distributed_loads()[0]))
+        self.found[0], self.reactions[0] = problem.solve(self._lateral_loads())
 
     def solve_on_droppers(self, lengths: Floats) -> None:
         """One step towards where droppers of given lengths [m], shape (droppers,), make the wires hang.
 
         A Newton step on the stored energy, which is convex: shortened where it would raise it.
         """
-        force = np.stack([self.wires.load(load) for load in self._distributed_loads()])
+        force = np.zeros_like(self.found)
+        if self.axes == 3:
+            force[0] = self._lateral_loads()
         force[-1] = self._vertical_loads()
         np.add.at(force[-1], self._lower, -self._clamps("contact_wire_clamp_mass"))
         np.add.at(force[-1], self._upper, -self._clamps("messenger_clamp_mass"))
@@ -290,8 +308,11 @@ class WireSubstructures:
         loads = self._distributed_loads()
         slopes = [wires.slopes(u, load) for u, load in zip(self.found, loads, strict=True)]
         points = np.column_stack([wires.x, *self.found[:, :n][:, wires.dof]])
-        supported = [self._at_support(mesh.contact_wires, i) for i in range(len(self.catenary.supports))]
-        arm_forces, support_forces = self._arm_forces(), self.reactions[:, supported].T
+        arm_forces = self._arm_forces()
+        support_forces = np.zeros((len(self.catenary.supports), self.axes - 1))
+        if mesh.messenger:
+            supported = [self._at_support(mesh.contact_wires, i) for i in range(len(support_forces))]
+            support_forces = self.reactions[:, supported].T
         if self.axes == 3:
             check_links(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))

@@ -30,7 +30,7 @@ def check_pulls(catenary: Catenary, pulls: Floats) -> None:
 
 def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
-    tension = catenary.messenger_wire.tension
+    tension = catenary.messenger_wire.tension if catenary.messenger_wire else 0.0
     _report(
         f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
         f" system_height or the messenger wire's tension of {tension:g} N"

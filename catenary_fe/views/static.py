@@ -160,10 +160,9 @@ def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
     ax = style.new_axes(ax, (10.0, 3.0))
     catenary = modes.catenary
     x = np.linspace(0, catenary.length, 120 * len(catenary.spans) + 1)
-    wires = {
-        "messenger wire": (modes.messenger, 1.0, style.MESSENGER),
-        "contact wire": (modes.contact, -1.0, style.CONTACT),
-    }
+    wires = {"contact wire": (modes.contact, -1.0, style.CONTACT)}
+    if modes.messenger:
+        wires = {"messenger wire": (modes.messenger, 1.0, style.MESSENGER), **wires}
     kind = modes.kind(mode)
     drawn = {name: _drawn(wire, mode, kind.kind == "sideways") for name, (wire, _, _) in wires.items()}
     largest = max(np.abs(shape).max() for shape in drawn.values())
@@ -175,11 +174,11 @@ def plot_mode(modes: Modes, mode: int, *, ax: Axes | None = None) -> Axes:
         return np.asarray(rest + 0.8 * np.interp(at, wire.x, drawn[name]) / largest)
 
     ends = [place(name, at) for name in wires]
-    ax.vlines(at, ends[1], ends[0], color=style.DROPPER, linewidth=0.6)
+    ax.vlines(at, ends[-1], ends[0], color=style.DROPPER, linewidth=0.6)
     for name, (_, rest, colour) in wires.items():
         ax.axhline(rest, color="#cccccc", linewidth=0.6)
         ax.plot(x, place(name, x), color=colour, linewidth=1.3, label=name)
-    ax.set_yticks([1.0, -1.0], ["messenger\nwire", "contact\nwire"])
+    ax.set_yticks([rest for _, rest, _ in wires.values()], [name.replace(" ", "\n") for name in wires])
     ax.set_ylim(-2.1, 2.7)  # room for a legend
     ax.margins(x=0.01)
     part = {"along": " (its vertical part, magnified)", "sideways": " (seen from above)"}.get(kind.kind, "")
