@@ -6,7 +6,7 @@ from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
-from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.line import Line, Overlap, ends_in_words, join_sections, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -19,7 +19,16 @@ from catenary_fe.layout.pantograph import (
     recorded_pantograph,
 )
 from catenary_fe.layout.parameters import GRAVITY
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import (
+    Dropper,
+    SectionEnd,
+    Span,
+    SteadyArm,
+    StitchWire,
+    Support,
+    Termination,
+    Wire,
+)
 from catenary_fe.layout.rules import layout_warnings
 
 __all__ = [
@@ -41,14 +50,17 @@ __all__ = [
     "PowerSystem",
     "RayleighDamping",
     "RunInterrupted",
+    "SectionEnd",
     "SolverError",
     "Span",
     "Stage",
     "SteadyArm",
     "StitchWire",
     "Support",
+    "Termination",
     "Wire",
     "counted",
+    "ends_in_words",
     "join_sections",
     "layout_schema",
     "layout_warnings",

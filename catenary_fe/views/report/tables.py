@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted
+from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted, ends_in_words
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -185,6 +185,7 @@ def _line_table(catenary: Catenary) -> Table:
         ("system height", _system_height(catenary)),
         ("steady arms", _arms(catenary)),
         *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
+        ("wires along the track", ends_in_words(catenary)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_lateral_rows(catenary),
