@@ -39,6 +39,8 @@ if TYPE_CHECKING:
         Support,
         Termination,
         Wire,
+        build_line,
+        catenary_from_tables,
         join_sections,
         layout_warnings,
         library,
@@ -55,6 +57,7 @@ if TYPE_CHECKING:
         Run,
         criteria_rows,
         load_run,
+        save_catenary,
     )
     from catenary_fe.statics import Shape, find_form, find_heights
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
@@ -81,6 +84,7 @@ _ROOMS = {
         "Run",
         "criteria_rows",
         "load_run",
+        "save_catenary",
     ),
     "studies.simulate": ("simulate",),
     "layout": (
@@ -107,6 +111,8 @@ _ROOMS = {
         "Support",
         "Termination",
         "Wire",
+        "build_line",
+        "catenary_from_tables",
         "join_sections",
         "layout_warnings",
         "library",
@@ -154,6 +160,8 @@ __all__ = [
     "Wire",
     "WireMotion",
     "WireProblem",
+    "build_line",
+    "catenary_from_tables",
     "criteria_rows",
     "elasticity",
     "even_nodes",
@@ -169,6 +177,7 @@ __all__ = [
     "load_run",
     "modal_run",
     "run_wire",
+    "save_catenary",
     "simulate",
     "solve_modes",
     "solve_statics",

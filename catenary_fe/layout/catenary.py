@@ -88,10 +88,6 @@ class Catenary(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
-    equipment: tuple[Equipment, ...] = ()
-    """within the spans: section insulators, neutral sections, clamps"""
-    cant_base: Positive = 1.5
-    """[m] between the rails' middles, over which `cant` is measured"""
     begin: SectionEnd = SectionEnd(kind="fixed")
     """what holds the wires along the track at the first support"""
     end: SectionEnd = SectionEnd(kind="weights")
@@ -100,6 +96,10 @@ class Catenary(Parameters):
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
@@ -300,6 +300,13 @@ class Catenary(Parameters):
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
     @_fixed_array
+    def stitch_wire_lengths(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): of the stitch wires at the supports; 0 where none hangs."""
+        usual = self.stitch_wire.length if self.stitch_wire else 0.0
+        own = [s.stitch_wire_length or usual for s in self.supports]
+        return np.array([each if self.has_stitch_wire(i) else 0.0 for i, each in enumerate(own)])
+
+    @_fixed_array
     def staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
         return np.array([support.stagger for support in self.supports])
@@ -383,11 +390,11 @@ class Catenary(Parameters):
         return self.replace(
             spans=tuple(reversed(spans)),
             supports=self.supports[::-1],
-            equipment=tuple(item.mirrored(self) for item in self.equipment),
-            evaluated_spans=evaluated,
             begin=self.end,
             end=self.begin,
             midpoint=self.midpoint and n + 2 - self.midpoint,
+            equipment=tuple(item.mirrored(self) for item in self.equipment),
+            evaluated_spans=evaluated,
         )
 
 

@@ -166,14 +166,14 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
-    equipment: tuple[Equipment, ...] = ()
-    """within the section's spans; that of other sections is not repeated"""
     begin: SectionEnd | None = None
     """what holds the wires along the track at the section's first support"""
     end: SectionEnd | None = None
     """what holds the wires along the track at the section's last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from the section's first one, that holds the wires along the track"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the section's spans; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -225,10 +225,6 @@ class LayoutFile(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
-    equipment: tuple[Equipment, ...] = ()
-    """within the spans: section insulators, neutral sections, clamps"""
-    cant_base: Positive = 1.5
-    """[m] between the rails' middles, over which `cant` is measured"""
     begin: SectionEnd = SectionEnd(kind="fixed")
     """what holds the wires along the track at the first support"""
     end: SectionEnd = SectionEnd(kind="weights")
@@ -237,6 +233,10 @@ class LayoutFile(Parameters):
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None

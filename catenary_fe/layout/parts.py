@@ -345,6 +345,8 @@ class Support(Parameters):
     to the left; linear between supports"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""
+    stitch_wire_length: Positive | None = None
+    """[m] along the track of the stitch wire here; unset: that of the stitch wire itself"""
 
     @model_validator(mode="after")
     def _damping_needs_a_spring(self) -> Self:

@@ -120,10 +120,10 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
     if wire is None:
         return
     for i, span in enumerate(catenary.spans):
-        halves = sum(catenary.has_stitch_wire(n) for n in (i, i + 1))
-        if halves * wire.length / 2 >= span.length:
+        lengths = catenary.stitch_wire_lengths[i : i + 2]
+        if lengths.sum() / 2 >= span.length:
             yield (
-                f"span {i + 1}: stitch wires of {wire.length:g} m meet in a span of {span.length:g} m;"
+                f"span {i + 1}: stitch wires of {lengths.max():g} m meet in a span of {span.length:g} m;"
                 " shorten stitch_wire.length"
             )
     if catenary.messenger_wire and wire.tension >= catenary.messenger_wire.tension:
@@ -189,6 +189,7 @@ _SUPPORT: dict[str, Range] = {
     "messenger_stiffness": (1e4, 1e10, "N/m"),
     "messenger_lateral_stiffness": (1e3, 1e10, "N/m"),
     "system_height": (0.1, 4.0, "m"),
+    "stitch_wire_length": (4.0, 40.0, "m"),
 }
 _ARM: dict[str, Range] = {
     "length": (0.3, 3.0, "m"),
@@ -249,6 +250,13 @@ def _without_effect(catenary: Catenary) -> list[str]:
             found.setdefault(
                 "stitch", f"support {i}: stitch_wire = false has no effect: the line has no stitch wires"
             )
+        inside = 1 < i < len(catenary.supports)
+        if inside and support.stitch_wire_length is not None and not catenary.has_stitch_wire(i - 1):
+            found.setdefault(
+                "stitch length",
+                f"support {i}: stitch_wire_length = {support.stitch_wire_length:g} m has no effect: no stitch"
+                " wire hangs there",
+            )
     if catenary.cant_base != 1.5 and not any(support.cant for support in catenary.supports):
         found["cant"] = f"cant_base = {catenary.cant_base:g} m has no effect: no support has a cant"
     if catenary.messenger_wire is None:
@@ -281,7 +289,8 @@ def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
 def _anchored(catenary: Catenary) -> list[str]:
     """Values of a line's ends alone, which anchor the wires whatever is written there."""
     inert = ("steady_arm", "messenger_stiffness", "messenger_damping", "messenger_lateral_stiffness",
-             "messenger_lateral_damping", "stitch_wire")  # fmt: skip
+             "messenger_lateral_damping", "stitch_wire",
+             "stitch_wire_length")  # fmt: skip
     inner = catenary.supports[1:-1]
     return [
         f"support {i}: {name} has no effect at the line's end, which anchors both wires"

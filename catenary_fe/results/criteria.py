@@ -253,7 +253,7 @@ def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance
 
 
 def _lateral(figures: KeyFigures) -> Iterator[Criterion]:
-    """The contact stays on the part of the head that may touch, where the pantograph says its width."""
+    """The contact stays on the part of the head that may touch, where the pantograph says how wide it is."""
     each = zip(figures.pantographs, figures.statistics, figures.lateral, strict=False)
     for pantograph, statistics, y in each:
         if y is not None and pantograph.head:

@@ -184,8 +184,8 @@ def _line_table(catenary: Catenary) -> Table:
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", _system_height(catenary)),
         ("steady arms", _arms(catenary)),
-        *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
         ("wires along the track", ends_in_words(catenary)),
+        *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_lateral_rows(catenary),
@@ -237,7 +237,8 @@ def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
-        rows.append(("stitch wires", f"{catenary.stitch_wire.length:g} m long"))
+        lengths = catenary.stitch_wire_lengths[list(catenary.stitched_supports)]
+        rows.append(("stitch wires", f"{_range(lengths)} m long"))
     return rows
 
 
