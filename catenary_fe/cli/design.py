@@ -11,7 +11,7 @@ import numpy as np
 from catenary_fe.cli import options
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
-from catenary_fe.layout import Catenary, load_catenary
+from catenary_fe.layout import Catenary, ends_in_words, load_catenary
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.rules import check_lengths, layout_warnings
 from catenary_fe.results.export import cell, check_xlsx, common_name
@@ -107,6 +107,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "stitch_wires": len(catenary.stitched_supports),
         "largest_stagger_m": float(np.abs(catenary.staggers).max()),
         "largest_lateral_pull_N": float(np.abs(catenary.lateral_pulls).max()),
+        "wires_along_the_track": ends_in_words(catenary),
         "system_height_m": catenary.system_height,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,

@@ -7,7 +7,7 @@ from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
-from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.line import Line, Overlap, ends_in_words, join_sections, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -20,7 +20,16 @@ from catenary_fe.layout.pantograph import (
     recorded_pantograph,
 )
 from catenary_fe.layout.parameters import GRAVITY
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import (
+    Dropper,
+    SectionEnd,
+    Span,
+    SteadyArm,
+    StitchWire,
+    Support,
+    Termination,
+    Wire,
+)
 from catenary_fe.layout.rules import layout_warnings
 from catenary_fe.layout.writer import layout_text
 
@@ -42,17 +51,20 @@ __all__ = [
     "PowerSystem",
     "RayleighDamping",
     "RunInterrupted",
+    "SectionEnd",
     "SolverError",
     "Span",
     "Stage",
     "SteadyArm",
     "StitchWire",
     "Support",
+    "Termination",
     "Wire",
     "build_line",
     "catenary_from_tables",
     "counted",
     "dropper_positions",
+    "ends_in_words",
     "join_sections",
     "layout_schema",
     "layout_text",

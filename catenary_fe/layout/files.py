@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.catenary import Catenary, Loss, RayleighDamping
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
@@ -25,7 +25,7 @@ from catenary_fe.layout.parameters import (
     problem_lines,
     shorten,
 )
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.toml import read_toml
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
@@ -165,6 +165,12 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
+    begin: SectionEnd | None = None
+    """what holds the wires along the track at the section's first support"""
+    end: SectionEnd | None = None
+    """what holds the wires along the track at the section's last support"""
+    midpoint: Annotated[int, Field(strict=True)] | None = None
+    """number of the support, from the section's first one, that holds the wires along the track"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -215,6 +221,14 @@ class LayoutFile(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
+    begin: SectionEnd = SectionEnd(kind="fixed")
+    """what holds the wires along the track at the first support"""
+    end: SectionEnd = SectionEnd(kind="weights")
+    """what holds the wires along the track at the last support"""
+    midpoint: Annotated[int, Field(strict=True)] | None = None
+    """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    tension_loss: Loss = 0.0
+    """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted
+from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted, ends_in_words
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -184,6 +184,7 @@ def _line_table(catenary: Catenary) -> Table:
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_heights)} m"),
         ("steady arms", _arms(catenary)),
+        ("wires along the track", ends_in_words(catenary)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_lateral_rows(catenary),
