@@ -6,6 +6,7 @@ from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Line, Overlap, joined, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
@@ -47,6 +48,7 @@ __all__ = [
     "SteadyArm",
     "StitchWire",
     "Support",
+    "Wear",
     "Wire",
     "counted",
     "joined",

@@ -14,6 +14,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Overlap, joined
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
@@ -166,6 +167,8 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
+    wear: tuple[Wear, ...] = ()
+    """of the section's contact wire; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -173,7 +176,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = self.model_fields_set - {"overlap", "count"}
+        own = (self.model_fields_set | {"wear"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -219,6 +222,8 @@ class LayoutFile(Parameters):
     """[m] between messenger wire and contact wire at the supports"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
+    wear: tuple[Wear, ...] = ()
+    """of the contact wire, since its droppers were cut"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None

@@ -1,6 +1,6 @@
 """Form finding: dropper lengths and the static shape."""
 
-from catenary_fe.statics.form_finding import find_form, find_heights
+from catenary_fe.statics.forms import find_form, find_heights
 from catenary_fe.statics.line import LineShape
 from catenary_fe.statics.schedules import ArmRow, DropperRow, SupportRow
 from catenary_fe.statics.shape import HangingWire, Shape
