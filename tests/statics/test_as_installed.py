@@ -155,15 +155,17 @@ def test_a_missing_dropper_by_formula():
 
 
 def test_a_wire_of_uniform_wear_by_formula():
-    """It rises by Δw L²/(8 (T₁ + T₂)) at mid-span where its arms carry nothing and rise with it... no arms."""
-    share, x = 0.8, SPAN * 1.5
+    """It rises with the messenger wire between its outer droppers: T₁ u₁ + T₂ u₂ = Δw s²/2, s from mid-span."""
+    share, s = 0.8, 20.0
     worn = line(wear=[cf.Wear(begin=0.0, end=150.0, area_left=share)])
-    new, old = cf.find_form(worn), cf.find_form(worn.as_designed())
-    rise = new.contact_wire_height(x) - old.contact_wire_height(x)
-    lift = (1 - share) * GRAVITY * CONTACT.mass_per_length * SPAN**2
-    assert rise - new.contact_wire_height(SPAN) + old.contact_wire_height(SPAN) == pytest.approx(
-        lift / 8 / (CONTACT.tension + MESSENGER.tension), rel=0.3
-    )
+    new, design = cf.find_form(worn), cf.find_form(worn.as_designed())
+    bent = 0.0
+    for wire in (0, 1):  # droppers stretch between them: their bending moments together are exact
+        after, before = (shape.wires[wire].height([75.0, 75.0 - s]) for shape in (new, design))
+        bent += (CONTACT, MESSENGER)[wire].tension * float(np.diff(before - after)[0])
+    lost = (1 - share) * GRAVITY * CONTACT.mass_per_length
+    assert bent == pytest.approx(lost * s**2 / 2, rel=1e-3)
+    assert new.contact_wire_height(75.0) - design.contact_wire_height(75.0) > 0.02
 
 
 def test_nothing_changed_is_nothing():
