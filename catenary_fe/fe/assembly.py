@@ -23,6 +23,7 @@ from catenary_fe.fe.installation import (
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
+from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary
 from catenary_fe.layout.equipment import stations
 
@@ -55,7 +56,10 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
     force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
     if axes == 3:
         pulls = np.concatenate(curve_pulls(catenary, mesh))[:, None, None]
-        force += scattered([(index, blocks * pulls)], size) @ np.roll(ups, -1, axis=1).ravel()
+        lefts = np.roll(ups, -1, axis=1)
+        force += scattered([(index, blocks * pulls)], size) @ lefts.ravel()
+        at_nodes = cant_forces(catenary, mesh) + leaning_weights(catenary, mesh, hanging)
+        force += (at_nodes[:, None] * lefts).ravel()
     held = _Restraints(catenary, mesh, installation, size)
     return System(
         axes=axes,

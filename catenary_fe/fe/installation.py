@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from catenary_fe.fe.equipment import add_to_elements, lumped, wear_elements
 from catenary_fe.fe.mesh import Mesh
-from catenary_fe.layout import Catenary, Wire
+from catenary_fe.layout import GRAVITY, Catenary, Wire
+from catenary_fe.layout.track import curvatures, lean
 
 Floats = NDArray[np.float64]
 
@@ -150,20 +151,20 @@ def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
 
 
 def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ).
+    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ) + g sin φ.
 
     Seen from a track that curves with the radius R, a straight wire under the tension T bends as if a force
-    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
+    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %. Seen from
+    one that leans by φ, a part of its weight pulls it to the lower rail.
     """
-    curvature = np.array([span.curvature for span in catenary.spans])
     pulls = element_pulls(catenary, mesh)
     counts = np.cumsum([p.size for p in pulls])[:-1]
     masses = np.split(element_values(catenary, mesh, "mass_per_length"), counts)
     found = []
     for wire, pull, mass in zip(mesh.wires, pulls, masses, strict=True):
         middle = (wire.x[:-1] + wire.x[1:]) / 2
-        span = np.searchsorted(catenary.support_positions, middle) - 1
-        found.append(pull * curvature[span] / mass)
+        weight = GRAVITY * np.sin(lean(catenary, middle))
+        found.append(pull * curvatures(catenary, middle) / mass + weight)
     return found
 
 

@@ -136,7 +136,7 @@ class System:
                 continue
             nodes = 2 * axes * (wire.first + np.arange(wire.x.size))
             index: Integers = nodes[:, None] + np.array([up, up + axes])
-            lateral = nodes[:, None] + np.array([1, 1 + axes])
+            lateral: Integers = nodes[:, None] + np.array([1, 1 + axes])
             paths.append(
                 ContactPath(
                     x=wire.x,
@@ -147,6 +147,8 @@ class System:
                     dof=self.dof[index],
                     supports=wire.supports,
                     section=wire.section,
+                    across=lateral if self.spatial else lateral[:0],
+                    across_dof=self.dof[lateral] if self.spatial else lateral[:0],
                 )
             )
         return tuple(paths)

@@ -7,7 +7,7 @@ from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Line, Overlap, joined, read_catenary
+from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -51,7 +51,7 @@ __all__ = [
     "Wear",
     "Wire",
     "counted",
-    "joined",
+    "join_sections",
     "layout_schema",
     "layout_warnings",
     "library",

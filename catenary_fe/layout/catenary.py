@@ -26,6 +26,7 @@ from catenary_fe.layout.parameters import (
 )
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
+from catenary_fe.layout.track import messenger_staggers, support_bends
 
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
@@ -89,6 +90,8 @@ class Catenary(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
@@ -277,9 +280,9 @@ class Catenary(Parameters):
     @property
     def leaves_the_plane(self) -> bool:
         """Whether stagger, curves or links lie outside the vertical plane."""
-        return any(span.curve_radius for span in self.spans) or any(
-            s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
-            for s in self.supports
+        return any(any(span.curvatures) for span in self.spans) or any(
+            s.stagger or y or s.cant or (s.steady_arm and s.steady_arm.length is not None)
+            for s, y in zip(self.supports, self.messenger_staggers.tolist(), strict=True)
         )
 
     @property
@@ -320,20 +323,20 @@ class Catenary(Parameters):
         return np.array([support.stagger for support in self.supports])
 
     @_fixed_array
+    def messenger_staggers(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): likewise of the messenger wire; of one that follows, where that is."""
+        return messenger_staggers(self)
+
+    @_fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
-        """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
+        """[N], shape (spans + 1,): force to the left with which stagger, curves, cant pull on the supports.
 
         Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
         """
-        lengths = np.array([span.length for span in self.spans])
-        direction = np.diff(self.staggers) / lengths
-        bend = lengths * np.array([span.curvature for span in self.spans]) / 2
-        pulls = np.zeros(len(self.supports))
-        pulls[1:-1] = np.diff(direction) + bend[:-1] + bend[1:]
-        return self.contact_wire.tension * len(self.contact_wire_offsets) * pulls
+        return self.contact_wire.tension * len(self.contact_wire_offsets) * support_bends(self)
 
     def planar(self) -> Self:
-        """The same line in the vertical plane: no stagger, no curves, links as springs.
+        """The same line in the vertical plane: no stagger, curves and cant, links as springs.
 
         A link under the lateral force H acts in the plane like a vertical spring of H over its length.
 
@@ -345,13 +348,14 @@ class Catenary(Parameters):
             s.replace(
                 stagger=0.0,
                 messenger_stagger=0.0,
+                cant=0.0,
                 messenger_lateral_stiffness=None,
                 messenger_lateral_damping=0.0,
                 steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
             )
             for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
         )
-        spans = tuple(span.replace(curve_radius=None) for span in self.spans)
+        spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in self.spans)
         return self.replace(spans=spans, supports=supports, spatial=False)
 
     @property
@@ -377,7 +381,7 @@ class Catenary(Parameters):
                 )
                 for d in span.droppers
             ]
-            spans.append(span.replace(droppers=tuple(reversed(images))))
+            spans.append(_turned(span).replace(droppers=tuple(reversed(images))))
         n = len(self.spans)
         evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
         return self.replace(
@@ -387,6 +391,13 @@ class Catenary(Parameters):
             wear=tuple(wear.mirrored(self) for wear in self.wear),
             evaluated_spans=evaluated,
         )
+
+
+def _turned(span: Span) -> Span:
+    """The span with its track seen from its other end."""
+    if span.curve_radius_end is None:
+        return span
+    return span.replace(curve_radius=span.curve_radius_end, curve_radius_end=span.curve_radius or 0.0)
 
 
 def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:

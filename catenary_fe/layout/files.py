@@ -15,7 +15,7 @@ from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Overlap, joined
+from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
     Lateral,
@@ -167,6 +167,8 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the section's spans; that of other sections is not repeated"""
     wear: tuple[Wear, ...] = ()
     """of the section's contact wire; that of other sections is not repeated"""
     overlap: Overlap | None = None
@@ -176,7 +178,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = (self.model_fields_set | {"wear"}) - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment", "wear"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -224,6 +226,8 @@ class LayoutFile(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
@@ -255,7 +259,7 @@ class LayoutFile(Parameters):
             overlaps += [entry.overlap or self.overlap or Overlap()] * entry.count
         if faults:
             raise InputError(*faults)
-        return joined(
+        return join_sections(
             sections, overlaps, name=self.name, source=self.source, evaluated_spans=self.evaluated_spans
         )
 
@@ -326,6 +330,7 @@ class LayoutFile(Parameters):
             droppers=droppers,
             pre_sag=entry.pre_sag,
             curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+            curve_radius_end=entry.curve_radius_end,
         )
 
 

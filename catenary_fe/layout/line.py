@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import sqrt
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,18 +66,6 @@ class Overlap(Parameters):
     def gap(self) -> float:
         """[m] between the two lines."""
         return _DISTANCE[self.kind] if self.distance is None else self.distance
-
-    @property
-    def handover(self) -> int:
-        """How many of the shared spans the first section serves."""
-        return (self.spans + 1) // 2
-
-
-class Place(NamedTuple):
-    """A place on a line: number of the section, from 0, and [m] along that section."""
-
-    section: int
-    x: float
 
 
 class Line(Catenary):
@@ -152,14 +140,6 @@ class Line(Catenary):
             (begin, before + section.length)
             for section, before, begin in zip(self.sections, self.begins, self.begins[1:], strict=False)
         )
-
-    def located(self, x: float) -> Place:
-        """The section in service at a place [m] along the line, and the place on it."""
-        found = 0
-        for number, (overlap, begin) in enumerate(zip(self.overlaps, self.begins[1:], strict=True), start=1):
-            middle = self.sections[number].support_positions[overlap.spans] / 2
-            found = number if x > begin + middle else found
-        return Place(found, x - self.begins[found])
 
     def _of_droppers(self, name: str) -> NDArray[Any]:
         return np.concatenate([getattr(section, name) for section in self.sections])
@@ -253,7 +233,7 @@ class Line(Catenary):
 _OWN = ("name", "source", "sections", "overlaps", "evaluated_spans")
 
 
-def joined(
+def join_sections(
     sections: Sequence[Catenary],
     overlaps: Sequence[Overlap],
     *,
@@ -351,6 +331,7 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
     for name, rule in (
         ("contact_wire_height", "the nominal height, from which pantographs count"),
         ("damping", "one for the line"),
+        ("cant_base", "one for the line"),
         ("is_spatial", "in space or in the vertical plane, all alike"),
     ):
         values = [getattr(section, name) for section in sections]
@@ -373,8 +354,10 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
                     f"{where} is {one.length:g} m in the section before and {other.length:g} m in the one"
                     " behind; they stand on the same masts: make them equal"
                 )
-            if one.curvature != other.curvature:
+            if one.curvatures != other.curvatures:
                 found.append(f"{where}: curve_radius differs between the two sections; the track is the same")
+        if [s.cant for s in a.supports[-1 - shared :]] != [s.cant for s in b.supports[: shared + 1]]:
+            found.append(f"overlap {n}: cant differs between the two sections; the track is the same")
     return found
 
 
@@ -395,12 +378,23 @@ def _served(
     spans: list[Span] = []
     supports: list[Support] = []
     begin = 0
-    for section, overlap in zip(sections, [*overlaps, None], strict=True):
-        end = len(section.spans) if overlap is None else len(section.spans) - overlap.spans + overlap.handover
+    for section, following, overlap in zip(sections, [*sections[1:], None], [*overlaps, None], strict=True):
+        end, behind = len(section.spans), 0
+        if following is not None and overlap is not None:
+            behind = _served_before(section, following, overlap.spans)
+            end += behind - overlap.spans
         spans += section.spans[begin:end]
         supports += section.supports[begin:end]
-        begin = 0 if overlap is None else overlap.handover
+        begin = behind
     return tuple(spans), (*supports, sections[-1].supports[-1])
+
+
+def _served_before(section: Catenary, following: Catenary, shared: int) -> int:
+    """How many of the shared spans the section before serves: at each mast the lower wire is in service."""
+    before, behind = section.contact_wire_heights[-shared - 1 :], following.contact_wire_heights[: shared + 1]
+    heights = {n: before[:n].sum() + behind[n:].sum() for n in range(1, shared + 1)}
+    lowest = min(heights.values()) + _SAME
+    return min((n for n in heights if heights[n] < lowest), key=lambda n: abs(2 * n - shared - 0.5))
 
 
 def read_catenary(record: dict[str, Any]) -> Catenary:

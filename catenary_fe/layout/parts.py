@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from catenary_fe.layout.parameters import Lateral, NonNegative, Number, Parameters, Positive, Text, refuse
+from catenary_fe.layout.track import MOST_CANT
 from catenary_fe.theory import Beam
 
 
@@ -104,20 +105,33 @@ class Span(Parameters):
     """[m] design sag of the contact wire at mid-span, a parabola between the outermost droppers"""
     curve_radius: Number | None = None
     """[m] of the track, positive in a curve to the left (centre at +y); unset or 0: straight"""
+    curve_radius_end: Number | None = None
+    """[m] at the span's end, of a transition curve: from `curve_radius` at its beginning the curvature
+    changes linearly; 0: straight there; unset: as at the beginning"""
 
     @model_validator(mode="after")
     def _curve_is_a_track(self) -> Self:
-        if self.curve_radius and abs(self.curve_radius) < SHARPEST_CURVE:
-            raise ValueError(
-                f"curve_radius = {self.curve_radius:g} m: no track with a catenary curves more sharply than"
-                f" {SHARPEST_CURVE:g} m; leave it out where the track is straight"
-            )
+        for name in ("curve_radius", "curve_radius_end"):
+            radius = getattr(self, name)
+            if radius and abs(radius) < SHARPEST_CURVE:
+                raise ValueError(
+                    f"{name} = {radius:g} m: no track with a catenary curves more sharply than"
+                    f" {SHARPEST_CURVE:g} m; leave it out where the track is straight"
+                )
         return self
 
     @property
-    def curvature(self) -> float:
-        """[1/m] of the track, positive to the left."""
-        return 1 / self.curve_radius if self.curve_radius else 0.0
+    def curvatures(self) -> tuple[float, float]:
+        """[1/m] of the track at the span's beginning and end, positive to the left; linear between."""
+        begin = 1 / self.curve_radius if self.curve_radius else 0.0
+        if self.curve_radius_end is None:
+            return begin, begin
+        return begin, 1 / self.curve_radius_end if self.curve_radius_end else 0.0
+
+    def radius_at(self, end: bool) -> float | None:
+        """[m] of the track at the span's beginning or end, positive to the left; None: straight there."""
+        curvature = self.curvatures[end]
+        return 1 / curvature if curvature else None
 
     @field_validator("droppers")
     @classmethod
@@ -241,6 +255,9 @@ class SteadyArm(Parameters):
         return self.mass if self.length is None else self.mass_per_length * self.length / 2 + self.clamp_mass
 
 
+Cant = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-MOST_CANT, le=MOST_CANT)]
+
+
 class Support(Parameters):
     """What holds the wires at a mast. The first and the last support of a line anchor both wires."""
 
@@ -261,8 +278,12 @@ class Support(Parameters):
     """[m] between the wires at this support; unset: the catenary's"""
     stagger: Lateral = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Lateral = 0.0
-    """[m] of the messenger wire to the left of the track's centre (+y)"""
+    messenger_stagger: Lateral | Literal["follows", "in curves"] = 0.0
+    """[m] of the messenger wire to the left of the track's centre (+y); "follows": plumb above the contact
+    wire; "in curves": so where the track curves on either side, else above the track's centre"""
+    cant: Cant = 0.0
+    """[m] by which the right rail lies higher than the left one: the track leans to the left, as in a curve
+    to the left; linear between supports"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""
 

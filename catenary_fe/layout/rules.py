@@ -113,6 +113,8 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
 
 def dropper_names(catenary: Catenary) -> list[str]:
     """Shape (droppers,): each dropper's name in errors."""
+    if sections := getattr(catenary, "sections", ()):
+        return [f"section {n}: {name}" for n, s in enumerate(sections, start=1) for name in dropper_names(s)]
     places = zip(catenary.dropper_spans, catenary.dropper_numbers, catenary.droppers, strict=True)
     return [f"span {i}: dropper {number} at {dropper.position:g} m" for i, number, dropper in places]
 
@@ -137,6 +139,7 @@ _LINE: dict[str, Range] = {
     "contact_wire_height": (3.5, 8.0, "m"),
     "system_height": (0.1, 4.0, "m"),
     "contact_wire_spacing": (0.01, 0.2, "m"),
+    "cant_base": (0.6, 1.8, "m"),
 }
 _DAMPING: dict[str, Range] = {"alpha": (0.0, 5.0, "1/s"), "beta": (0.0, 0.03, "s")}
 _WIRE: dict[str, Range] = {
@@ -158,6 +161,7 @@ _DROPPER: dict[str, Range] = {
 _SUPPORT: dict[str, Range] = {
     "stagger": (0.0, 0.6, "m"),
     "messenger_stagger": (0.0, 1.5, "m"),
+    "cant": (0.0, 0.2, "m"),
     "messenger_stiffness": (1e4, 1e10, "N/m"),
     "messenger_lateral_stiffness": (1e3, 1e10, "N/m"),
     "system_height": (0.1, 4.0, "m"),
@@ -221,6 +225,8 @@ def _without_effect(catenary: Catenary) -> list[str]:
             found.setdefault(
                 "stitch", f"support {i}: stitch_wire = false has no effect: the line has no stitch wires"
             )
+    if catenary.cant_base != 1.5 and not any(support.cant for support in catenary.supports):
+        found["cant"] = f"cant_base = {catenary.cant_base:g} m has no effect: no support has a cant"
     if catenary.messenger_wire is None:
         found |= dict(_of_messenger(catenary))
     if catenary.stitch_wire and not catenary.stitched_supports:
@@ -244,7 +250,8 @@ def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
     for i, support in enumerate(catenary.supports, start=1):
         for name in names:
             if value := getattr(support, name):
-                yield name, f"support {i}: {name} = {value:g} has no effect without a messenger_wire"
+                shown = value if isinstance(value, str) else f"{value:g}"
+                yield name, f"support {i}: {name} = {shown} has no effect without a messenger_wire"
 
 
 def _anchored(catenary: Catenary) -> list[str]:
@@ -294,7 +301,7 @@ def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Rang
 def _unusual(owner: Parameters, usual: dict[str, Range]) -> Iterator[str]:
     for name, (least, most, unit) in usual.items():
         value = getattr(owner, name, None)
-        if value and not least <= abs(value) <= most:
+        if value and not isinstance(value, str) and not least <= abs(value) <= most:
             bounds = f"{least:g} to {most:g}" if least else f"at most {most:g}"
             yield f"{name} = {value:g} {unit}: overhead lines have {bounds} {unit}; look at the unit"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import inf
 from operator import ge, gt, le
@@ -23,7 +23,7 @@ from catenary_fe.layout.current_collection import (
     mean_force_limit,
 )
 from catenary_fe.layout.parameters import changed_by_copy
-from catenary_fe.results.quantities import DIGITS, FORCE, NON_UNIFORMITY
+from catenary_fe.results.quantities import DIGITS, FORCE, LATERAL, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
@@ -127,6 +127,7 @@ class KeyFigures:
     catenary, pantographs : what ran
     statistics : of each pantograph's contact force over the evaluated spans
     uplift : [m] largest at each support of the evaluated spans, by its number from 1
+    lateral : [m] farthest contact from the middle of each pantograph's head; None where it is not known
     non_uniformity : of the elasticity, (e_max − e_min)/(e_max + e_min); None where it was not computed
     """
 
@@ -136,6 +137,7 @@ class KeyFigures:
     statistics: Sequence[ForceStatistics]
     uplift: Mapping[int, float]
     non_uniformity: float | None = None
+    lateral: Sequence[float | None] = ()
 
 
 @checked
@@ -147,7 +149,7 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, 0.1 or 0.2 % of the time in
     losses of contact longer than 5 ms, clearance for twice the uplift at steady arms that state theirs
-    (``uplift_room``), 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
+    (``uplift_room``), contact within half the width of heads that state theirs, 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
     it (:meth:`Run.with_elasticity`); no limit of it is known here.
 
     Raises InputError for a partial run.
@@ -163,6 +165,7 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
         statistics=run.contact_force_statistics(filter=filter),
         uplift=run.uplift_by_support(),
         non_uniformity=curve.non_uniformity if curve else None,
+        lateral=[run.largest_contact_lateral(i) for i in range(len(run.pantographs))],
     )
     return judge(figures, system)
 
@@ -174,6 +177,7 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
         is_set = pantograph.target_mean_force(figures.speed) is not None
         rows += _mean_force(statistics, system, figures.speed, MEAN_FORCE_TOLERANCE if is_set else 0.0)
         rows += _spread(statistics, system, figures.speed)
+    rows += _lateral(figures)
     rows += _uplift(figures)
     rows.append(_speed(figures))
     rows += _gradients(figures)
@@ -245,6 +249,21 @@ def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance
         _row(s, "mean", tolerance=tolerance, relation="at least", **_against(low)),
         _row(s, "mean", tolerance=tolerance, relation="at most", **_against(high)),
     ]
+
+
+def _lateral(figures: KeyFigures) -> Iterator[Criterion]:
+    """The contact stays on the part of the head that may touch, where the pantograph says how wide that is."""
+    each = zip(figures.pantographs, figures.statistics, figures.lateral, strict=False)
+    for pantograph, statistics, y in each:
+        if y is not None and pantograph.head:
+            yield Criterion(
+                name=LATERAL.name,
+                pantograph=statistics.pantograph,
+                value=LATERAL.shown(y),
+                limit=LATERAL.shown(pantograph.head.width / 2),
+                unit=LATERAL.unit,
+                source="half of the pantograph's head.width",
+            )
 
 
 def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Criterion]:

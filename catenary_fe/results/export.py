@@ -37,6 +37,7 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
             "contact_force_N": data["contact_force"].values[i],
             "contact_force_0_20_Hz_N": filtered[i],
             "wire_height_m": data["wire_height"].values[i],
+            **_contact_places(data, i),
             **{f"mass_{n + 1}_height_m": z for n, z in enumerate(masses) if np.isfinite(z).all()},
         }
     tables["support_uplift"] = {"time_s": run.time} | {
@@ -54,6 +55,19 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
         )
     }
     return tables
+
+
+def _contact_places(data: Any, pantograph: int) -> Table:
+    """Columns of the contacts' places on a pantograph's head, where a run in space has them."""
+    if "contact_lateral" not in data:
+        return {}
+    each = data["contact_lateral"].values[pantograph]
+    several = len(each) > 1
+    return {
+        f"{f'contact_{n}_' if several else 'contact_'}lateral_m": y
+        for n, y in enumerate(each, start=1)
+        if np.isfinite(y).any()
+    }
 
 
 def _metres(x: float) -> str:

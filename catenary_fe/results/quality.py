@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout import AnyPantograph, Catenary, Line
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 
@@ -329,10 +329,12 @@ def _start_transient(run: Run) -> Iterator[Check]:
     if first > 1 and catenary.support_positions[first - 2] >= started and len(numbers) == 1:
         numbers = [first - 1, *numbers]
     at = catenary.support_positions
-    places = [item.middle(catenary) for item in catenary.equipment]
-    bare = [n for n in numbers if not any(at[n - 1] <= x < at[n] for x in places)]
+    carried = {int(np.searchsorted(at, item.middle(catenary))) for item in catenary.equipment}
+    apart = _beside_overlaps(catenary) | carried
     equal = [
-        (a, b) for a, b in pairwise(bare) if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1]
+        (a, b)
+        for a, b in pairwise(numbers)
+        if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1] and not {a, b} & apart
     ]
     if not equal:
         return
@@ -347,6 +349,18 @@ def _start_transient(run: Run) -> Iterator[Check]:
             found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
     value, text = _worst(found)
     yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
+
+
+def _beside_overlaps(catenary: Catenary) -> set[int]:
+    """Numbers of the spans in and next to overlaps, where equal spans need not have equal forces."""
+    zones = catenary.common_zones if isinstance(catenary, Line) else ()
+    ends = catenary.support_positions
+    return {
+        n
+        for begin, end in zones
+        for n in range(1, ends.size)
+        if ends[n] > begin - catenary.spans[n - 1].length and ends[n - 1] < end + catenary.spans[n - 1].length
+    }
 
 
 def _slack_droppers(run: Run) -> Iterator[Check]:

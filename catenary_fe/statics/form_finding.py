@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from catenary_fe.fe.assembly import balanced
 from catenary_fe.fe.cable import scattered
 from catenary_fe.fe.equipment import lumped
-from catenary_fe.fe.installation import Installation, curve_pulls
+from catenary_fe.fe.installation import Installation, curve_pulls, point_masses
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
 from catenary_fe.layout.rules import dropper_names
 from catenary_fe.statics.as_set import mast_springs
@@ -49,6 +50,7 @@ class WireSubstructures:
         self.stiffness = np.array([d.stiffness for d in droppers], dtype=float)
         self.found = np.zeros((self.axes - 1, 2 * self.wires.nodes))
         self.pull, self._half_weight = np.zeros(len(droppers)), np.zeros(len(droppers))
+        self._lengths = np.zeros(len(droppers))
         self._lower = self.wires.dof[self.mesh.nodes(self.mesh.lower)]
         self._upper = self.wires.dof[self.mesh.nodes(self.mesh.upper)]
         self._shift = catenary.lower_clamp_positions - catenary.dropper_positions
@@ -63,7 +65,7 @@ class WireSubstructures:
     def set_dropper_weights(self, lengths: Floats) -> None:
         """Lengths [m] of the droppers, of which their weight comes."""
         per_length = np.array([d.mass_per_length for d in self.catenary.droppers])
-        self._half_weight = GRAVITY * per_length * lengths / 2
+        self._half_weight, self._lengths = GRAVITY * per_length * lengths / 2, lengths
 
     def _clamps(self, which: str) -> Floats:
         """[N], shape (droppers,): weight at one end of the droppers."""
@@ -124,6 +126,15 @@ class WireSubstructures:
             np.add.at(force, clamps, -GRAVITY * self.catenary.stitch_wire.clamp_mass)
         return force
 
+    def _lateral_loads(self) -> Floats:
+        """[N], shape (2 * nodes,), to the left: of curves and cant on the wires and what they carry."""
+        mesh, catenary = self.mesh, self.catenary
+        force = self.wires.load(self._distributed_loads()[0])
+        masses = point_masses(catenary, mesh, self._lengths)[1]
+        at_nodes = cant_forces(catenary, mesh) + leaning_weights(catenary, mesh, masses)
+        np.add.at(force, self.wires.dof, at_nodes)
+        return force
+
     # what holds
 
     def _fixed_heights(self) -> Fixed:
@@ -145,7 +156,7 @@ class WireSubstructures:
         catenary, held, last = self.catenary, {}, len(self.catenary.supports) - 1
         for i, support in enumerate(catenary.supports):
             if self.mesh.messenger:
-                held[self._at_support(self.mesh.contact_wires, i)] = support.messenger_stagger
+                held[self._at_support(self.mesh.contact_wires, i)] = float(catenary.messenger_staggers[i])
             if not (support.steady_arm or i in (0, last)):
                 continue
             for wire, offset in enumerate(catenary.contact_wire_offsets):
@@ -193,14 +204,16 @@ class WireSubstructures:
         blocks = righting[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
         leaning = scattered([(index, blocks)], 2 * self.wires.nodes)
         problem = self.wires.problem(self._fixed_lateral(), leaning)
-        self.found[0], self.reactions[0] = problem.solve(self.wires.load(self._distributed_loads()[0]))
+        self.found[0], self.reactions[0] = problem.solve(self._lateral_loads())
 
     def solve_on_droppers(self, lengths: Floats) -> None:
         """One step towards where droppers of given lengths [m], shape (droppers,), make the wires hang.
 
         A Newton step on the stored energy, which is convex: shortened where it would raise it.
         """
-        force = np.stack([self.wires.load(load) for load in self._distributed_loads()])
+        force = np.zeros_like(self.found)
+        if self.axes == 3:
+            force[0] = self._lateral_loads()
         force[-1] = self._vertical_loads()
         np.add.at(force[-1], self._lower, -self._clamps("contact_wire_clamp_mass"))
         np.add.at(force[-1], self._upper, -self._clamps("messenger_clamp_mass"))

@@ -43,7 +43,9 @@ def plot_layout(
 
     if to_scale and not spans:
         spans = stretch.evaluated_pair(catenary).spans
-    return stretch.draw_line(catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4))
+    return stretch.draw_line(
+        catenary, draw, spans, ax, (11.0, 1.8 if to_scale else 4.4), stretch.overlap_spans(catenary)
+    )
 
 
 def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) -> None:
@@ -52,6 +54,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     contact = [line for line in lines if line.name == "contact wire"]
     low = min(float(line.z.min()) for line in contact) - _BELOW
     top = float(catenary.messenger_support_heights[part.supports].max())
+    top = max([top, *(float(line.z.max()) for line in lines if line.z.size)])
     high = top + (0.1 if to_scale else 0.32) * (top - low)
     ax.set_ylim(low, high)
     stretch.frame(ax, part)
@@ -162,8 +165,9 @@ def plot_plan(
     def draw(ax: Axes, part: stretch.Stretch) -> None:
         _draw_plan(ax, part, shape, head_width)
 
-    curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if span.curve_radius]
-    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), curved)
+    curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if any(span.curvatures)]
+    among = stretch.overlap_spans(shape.catenary) or curved
+    return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), among)
 
 
 def head_width(pantographs: Iterable[AnyPantograph]) -> float:
@@ -190,11 +194,28 @@ def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> N
     style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
 
 
-def _curves(part: stretch.Stretch) -> list[tuple[float, int, int]]:
-    """Radius, first and last span of each run of spans that curve alike."""
-    groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curve_radius or 0.0)
-    found = [(radius, list(numbers)) for radius, numbers in groups]
-    return [(radius, numbers[0], numbers[-1]) for radius, numbers in found if radius]
+def _curves(part: stretch.Stretch) -> list[tuple[tuple[float, ...], int, int]]:
+    """Radii (0: straight), first and last span of each run of spans that curve alike.
+
+    One radius of a circular curve, two of a transition.
+    """
+    groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curvatures)
+    found = [(curvatures, list(numbers)) for curvatures, numbers in groups if any(curvatures)]
+    return [(_radii(*curvatures), numbers[0], numbers[-1]) for curvatures, numbers in found]
+
+
+def _radii(begin: float, end: float) -> tuple[float, ...]:
+    radii = (1 / begin if begin else 0.0, 1 / end if end else 0.0)
+    return radii[:1] if begin == end else radii
+
+
+def _side(radii: tuple[float, ...]) -> str:
+    sides = dict.fromkeys("left" if radius > 0 else "right" for radius in radii if radius)
+    return " then ".join(sides)
+
+
+def _radius(radii: tuple[float, ...]) -> str:
+    return " to ".join(f"{abs(radius):g}" if radius else "∞" for radius in radii)
 
 
 def _curve(part: stretch.Stretch) -> str:
@@ -202,26 +223,25 @@ def _curve(part: stretch.Stretch) -> str:
     if not curves:
         return "straight track"
     if len(curves) > 2:
-        radii = [abs(radius) for radius, _, _ in curves]
-        return f"{len(curves)} curves, radii {min(radii):g} to {max(radii):g} m"
+        known = [abs(radius) for radii, _, _ in curves for radius in radii if radius]
+        return f"{len(curves)} curves, radii {min(known):g} to {max(known):g} m"
     said = []
-    for radius, first, last in curves:
+    for radii, first, last in curves:
         where = stretch.Stretch(part.catenary, first, last)
         here = "" if where == part else f", in {where}"
-        said.append(f"curve to the {'left' if radius > 0 else 'right'}, radius {abs(radius):g} m{here}")
+        said.append(f"curve to the {_side(radii)}, radius {_radius(radii)} m{here}")
     return " and ".join(said)
 
 
 def _draw_curves(ax: Axes, part: stretch.Stretch) -> None:
     """A bar along the bottom under each curve."""
     supports, axes = part.catenary.support_positions, ax.get_xaxis_transform()
-    for i, (radius, first, last) in enumerate(_curves(part)):
+    for i, (radii, first, last) in enumerate(_curves(part)):
         ends = supports[first - 1], supports[last]
         ax.plot(ends, (0.1, 0.1), color=_CURVE, linewidth=3.0, solid_capstyle="butt", transform=axes,
                 label=None if i else "curve")  # fmt: skip
-        side = "left" if radius > 0 else "right"
         if (ends[1] - ends[0]) > 0.08 * (part.end - part.start):
-            text = f"{side}, R {abs(radius):g} m"
+            text = f"{_side(radii)}, R {_radius(radii)} m"
             box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
             ax.text(
                 sum(ends) / 2, 0.025, text, transform=axes, ha="center", fontsize=8, color=_CURVE, bbox=box

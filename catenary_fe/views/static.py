@@ -14,7 +14,7 @@ from catenary_fe.results import Elasticity
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
 from catenary_fe.statics import HangingWire, LineShape, Shape
 from catenary_fe.views import style
-from catenary_fe.views.stretch import Stretch, evaluated_pair, frame, mark_detail, stretch
+from catenary_fe.views.stretch import Stretch, evaluated_pair, frame, mark_detail, overlap_spans, stretch
 
 RUN_OFF = 0.3  # [m] above the design line: higher wires run off to their anchors
 _LEFT = "#e6a07c"  # the left contact wire, of two
@@ -33,7 +33,7 @@ def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: A
     part = stretch(shape.catenary, spans)
     if ax is not None:
         return _heights(ax, shape, part)
-    detail = None if spans or part.is_close else evaluated_pair(shape.catenary)
+    detail = None if spans or part.is_close else evaluated_pair(shape.catenary, overlap_spans(shape.catenary))
     rows = 3 if detail else 2
     whole, *others = style.new_panels((11.0, 2.9 * rows), [1] * rows)
     _tensions(others[0], shape, part)

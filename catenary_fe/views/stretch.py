@@ -112,6 +112,15 @@ def evaluated_pair(catenary: Catenary, among: Sequence[int] = ()) -> Stretch:
     return Stretch(catenary, first, min(first + 1, len(catenary.spans)))
 
 
+def overlap_spans(catenary: Catenary) -> list[int]:
+    """Numbers of the spans in which a pantograph goes over from one tension section to the next."""
+    if not isinstance(catenary, SectionedLine):
+        return []
+    middles = [(begin + end) / 2 for begin, end in catenary.common_zones]
+    numbers = {int(np.searchsorted(catenary.support_positions, x + d)) for x in middles for d in (-1, 1)}
+    return sorted(numbers)
+
+
 def draw_line(
     catenary: Catenary,
     draw: Callable[[Axes, Stretch], object],

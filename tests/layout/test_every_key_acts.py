@@ -43,6 +43,7 @@ messenger_wire = { mass_per_length = 0.6, axial_stiffness = 8e6, tension = 12e3 
 [support]
 messenger_lateral_stiffness = 1e5
 messenger_lateral_damping = 10.0
+cant = 0.05
 [support.steady_arm]
 length = 1.0
 mass_per_length = 0.7
@@ -85,7 +86,7 @@ SUPPORT = {
     "messenger_stiffness": 4e5, "messenger_damping": 20.0, "messenger_lateral_stiffness": 2e5,
     "messenger_lateral_damping": 20.0, "system_height": 1.3, "contact_wire_height": 5.495,
     "stagger": 0.1, "messenger_stagger": 0.05,
-    "stitch_wire": False,
+    "stitch_wire": False, "cant": 0.1,
 }  # fmt: skip
 DROPPER = {
     "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
@@ -98,6 +99,7 @@ LAYOUT: dict[str, Any] = {
     "equipment.x": 22.0, "equipment.span": 1, "equipment.position": 3.0, "equipment.mass": 9.0,
     "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
     "equipment.name": "an insulator", "equipment.source": "elsewhere",
+    "cant_base": 1.1, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
 } | {
     f"{place}.{key}": value
@@ -219,7 +221,7 @@ ELSEWHERE = {
     "stagger": "space", "curve_radius": "space", "messenger_lateral_stiffness": "space",
     "messenger_lateral_damping": "space", "messenger_stagger": "space", "length": "space",
     "mass_per_length": "space", "clamp_mass": "space", "inclination": "space", "side": "space",
-    "holds_design_height": "many wires",
+    "holds_design_height": "many wires", "cant": "space", "cant_base": "space", "curve_radius_end": "space",
 }  # fmt: skip
 REFUSED = {
     "equipment.span": "beside x", "equipment.position": "beside x",
@@ -232,7 +234,11 @@ def base_of(place: str) -> str:
     owner, _, last = place.rpartition(".")
     if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment"):
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
-        return ELSEWHERE.get(last, "plane") if last in ("contact_wire", "curve_radius") else of_owner
+        return (
+            ELSEWHERE.get(last, "plane")
+            if last in ("contact_wire", "curve_radius", "curve_radius_end")
+            else of_owner
+        )
     return ELSEWHERE.get(last, "plane")
 
 

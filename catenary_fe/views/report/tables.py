@@ -223,9 +223,16 @@ def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     rows = []
     if np.any(catenary.staggers):
         rows.append(("stagger", f"{_range(catenary.staggers)} m"))
-    radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
-    if radii:
-        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(radii), 'span')}"))
+    curved = [span for span in catenary.spans if any(span.curvatures)]
+    if curved:
+        radii = [1 / curvature for span in curved for curvature in span.curvatures if curvature]
+        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(curved), 'span')}"))
+        transitions = sum(span.curvatures[0] != span.curvatures[1] for span in curved)
+        if transitions:
+            rows.append(("transition curves", counted(transitions, "span")))
+    cants = [1e3 * support.cant for support in catenary.supports]
+    if any(cants):
+        rows.append(("cant", f"{_range(cants)} mm over {catenary.cant_base:g} m"))
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:

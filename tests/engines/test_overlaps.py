@@ -1,0 +1,227 @@
+"""Lines of several tension sections: overlaps by the rule and as written, on all engines."""
+
+import json
+
+import numpy as np
+import pytest
+
+import catenary_fe as cf
+from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.fe.contact import place
+from catenary_fe.layout import read_catenary
+from catenary_fe.statics.newton import static_contact
+from tests.conftest import LAYOUTS
+
+SPEED = 250 / 3.6
+
+
+def section(spans: int, name: str = "en50318_2002") -> cf.Catenary:
+    line = cf.load_catenary(LAYOUTS / f"{name}.toml")
+    return line.replace(spans=line.spans[:spans], supports=line.supports[: spans + 1], evaluated_spans=None)
+
+
+def raised(line: cf.Catenary, by: float) -> cf.Catenary:
+    height = line.contact_wire_height + by
+    supports = tuple(support.replace(contact_wire_height=height) for support in line.supports)
+    return line.replace(supports=supports)
+
+
+@pytest.fixture(scope="module")
+def line() -> cf.Line:
+    part = section(6)
+    return cf.join_sections([part, part], [cf.Overlap(spans=3)], evaluated_spans=(3, 4, 5, 6, 7))
+
+
+@pytest.fixture(scope="module")
+def shape(line: cf.Line) -> cf.Shape:
+    return cf.find_form(line)
+
+
+@pytest.fixture(scope="module")
+def run(shape: cf.Shape, pantograph: cf.Pantograph) -> cf.Run:
+    return cf.simulate(shape, [pantograph], speed=SPEED)
+
+
+def test_line_is_what_pantographs_run_along(line: cf.Line) -> None:
+    assert line.begins == (0.0, 180.0)
+    assert line.length == pytest.approx(540.0)
+    assert line.common_zones == ((180.0, 360.0),)
+    assert np.ptp(line.contact_wire_heights) == 0.0  # in service nothing is lifted
+    assert read_catenary(json.loads(line.model_dump_json())) == line
+
+
+@pytest.mark.parametrize(("spans", "name"), [(3, "re330"), (4, "re330"), (5, "re330"), (3, "en50318_2002")])
+def test_wires_that_run_off_are_lifted_and_side_by_side(spans: int, name: str) -> None:
+    part = section(9, name)
+    a, b = cf.join_sections([part, part], [cf.Overlap(spans=spans, lift=0.3, distance=0.3)]).sections
+    assert a.contact_wire_heights[-2] == pytest.approx(5.6)
+    assert b.contact_wire_heights[1] == pytest.approx(5.6)
+    assert np.all(a.contact_wire_heights[: 10 - 2] == 5.3)
+    if a.is_spatial:
+        apart = a.staggers[-spans:-1] - b.staggers[1:spans]
+        assert np.abs(apart) == pytest.approx(np.full(spans - 1, 0.3))
+        assert np.all(apart == apart[0])  # side by side: they do not cross
+
+
+def test_lifted_wire_rises_by_itself(shape: cf.Shape, line: cf.Line) -> None:
+    """A free wire is a parabola of its weight over its tension: level where it begins to rise."""
+    wire = line.sections[0].contact_wire
+    rise = np.sqrt(2 * 0.25 * wire.tension / (wire.mass_per_length * 9.81))
+    x = np.linspace(300.0 - 0.6 * rise, 300.0, 30)
+    height = shape.contact_wires[0].height(x) - 5.3
+    assert height == pytest.approx(0.25 * ((x - 300.0 + rise) / rise) ** 2, abs=0.012)
+
+
+def test_droppers_and_arms_pull_everywhere(shape: cf.Shape) -> None:
+    assert shape.dropper_forces.min() > 10.0
+    assert shape.dropper_forces.size == shape.system.droppers.length.size
+
+
+def test_joined_system_is_its_sections(shape: cf.Shape, line: cf.Line) -> None:
+    system, parts = shape.system, [part.system for part in shape.sections]
+    assert system.size == sum(part.size for part in parts)
+    assert system.mass.sum() == pytest.approx(sum(part.mass.sum() for part in parts), rel=1e-12)
+    rest = np.zeros(system.dof.size)
+    assert np.abs(system.gather(system.out_of_balance(rest))).max() < 1e-3
+    moved = system.spread(np.random.default_rng(1).normal(size=system.size) * 1e-4)
+    slope = (system.energy(1.001 * moved) - system.energy(0.999 * moved)) / 0.002
+    assert slope == pytest.approx(-moved @ system.out_of_balance(moved), rel=1e-6)
+    places = np.concatenate([path.x[path.supports] for path in system.contact_paths])
+    assert set(np.round(places, 6)) == set(np.round(line.support_positions, 6))
+
+
+def test_force_hands_over_without_loss(run: cf.Run) -> None:
+    (force,) = run.contact_force_statistics()
+    assert force.contact_loss == 0.0
+    assert force.std < 31.0  # the reference model's range at this speed
+    each = run.data["section_force"].values[0]
+    assert each.sum(axis=0) == pytest.approx(run.data["contact_force"].values[0], abs=1e-9)
+    x = run.data["position"].values[0]
+    assert not each[1, x < 180].any()
+    assert not each[0, x > 360].any()
+    both = x[(each > 0).all(axis=0)]
+    assert 240 < both.min() < 270 < both.max() < 300  # in the common span
+
+
+def test_energy_balance_holds_over_the_overlap(run: cf.Run) -> None:
+    scale = np.abs(run.data["lost_work"].values).max()
+    assert np.abs(run.missing_energy).max() < 2e-3 * scale
+
+
+def test_engines_agree_on_an_overlap(shape: cf.Shape, run: cf.Run, pantograph: cf.Pantograph) -> None:
+    (ours,) = run.contact_force_statistics()
+    inside = run.window(0)
+    for method, rms in (("linearised", 0.03), ("exudyn", 0.03)):
+        other = cf.simulate(shape, [pantograph], speed=SPEED, method=method)
+        gap = other.filtered_contact_force()[0] - run.filtered_contact_force()[0]
+        assert np.sqrt((gap[inside] ** 2).mean()) < rms * ours.std, method
+        uplift = other.data["support_uplift"].values - run.data["support_uplift"].values
+        assert np.abs(uplift).max() < 1e-3, method
+
+
+def test_without_lift_the_wires_share_the_force(pantograph: cf.Pantograph) -> None:
+    """In the middle of the overlap of two lines that are mirror images both wires carry the same."""
+    part = section(6)
+    both = cf.join_sections([part, part.mirrored()], [cf.Overlap(spans=4, as_written=True)])
+    system = cf.find_form(both).system
+    head = pantograph.assemble(spatial=False)
+    middle = sum(both.common_zones[0]) / 2
+    placed = place([pantograph], np.array([120.0]), np.array([middle]), spatial=False)
+    assert head.size == placed[0].body.size
+    _, (at_rest,) = static_contact(system, placed)
+    assert at_rest.forces[0] == pytest.approx(at_rest.forces[1], rel=1.5e-3)
+    aside = place([pantograph], np.array([120.0]), np.array([middle - 20.0]), spatial=False)
+    _, (not_there,) = static_contact(system, aside)
+    assert abs(np.diff(not_there.forces)[0]) > 0.1  # not by construction
+
+
+@pytest.mark.parametrize("method", ["nonlinear", "linearised"])
+def test_a_wire_far_above_changes_nothing(method: str, pantograph: cf.Pantograph) -> None:
+    part = section(6)
+    single = cf.find_form(part)
+    both = cf.find_form(cf.join_sections([part, raised(part, 5.0)], [cf.Overlap(spans=3, as_written=True)]))
+    alone = cf.simulate(single, [pantograph], speed=SPEED, method=method)
+    beside = cf.simulate(both, [pantograph], speed=SPEED, method=method)
+    x = alone.data["position"].values[0]
+    n = int((x < 300.0).sum())
+    ours, theirs = (r.data["contact_force"].values[0, :n] for r in (beside, alone))
+    assert np.abs(ours - theirs).max() < 1e-3 * theirs.std()
+
+
+def test_mirror_image_of_a_line(line: cf.Line) -> None:
+    image = line.mirrored()
+    assert image.mirrored() == line
+    ours, theirs = cf.find_form(line), cf.find_form(image)
+    x = np.linspace(1.0, line.length - 1.0, 200)
+
+    def served(shape: cf.Shape, at: np.ndarray) -> np.ndarray:
+        wires = [w for w in shape.contact_wires]
+        return np.array([min(w.height([s])[0] for w in wires if w.x[0] <= s <= w.x[-1]) for s in at.tolist()])
+
+    assert served(ours, x) == pytest.approx(served(theirs, line.length - x), abs=2e-5)
+
+
+def test_elasticity_is_that_of_the_lower_wire(shape: cf.Shape) -> None:
+    single = cf.elasticity(shape.sections[0], positions=[75.0, 90.0])
+    assert cf.elasticity(shape, positions=[75.0, 90.0]).uplift == pytest.approx(single.uplift, rel=1e-3)
+
+
+def test_lateral_distance_and_head(pantograph: cf.Pantograph) -> None:
+    """Wires that run off leave the head, at a height at which they do not matter."""
+    part = section(9, "re330")
+    shape = cf.find_form(
+        cf.join_sections([part, part], [cf.Overlap(spans=3)], evaluated_spans=(4, 5, 6, 7, 8))
+    )
+    head = cf.library.pantograph("DSA380")
+    run = cf.simulate(shape, [head], speed=SPEED, method="linearised", time=TimeSettings(step=2e-3))
+    assert run.contact_force_statistics()[0].contact_loss == 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"spans": 2}, "takes at least 3"),
+        ({"as_written": True, "lift": 0.3}, "lift has no effect"),
+        ({"spans": 7}, "has 6 spans"),
+        ({"lift": 1.3}, "leaves no dropper"),
+    ],
+)
+def test_faults_of_overlaps(change: dict, words: str) -> None:
+    part = section(6)
+    with pytest.raises(cf.InputError, match=words):
+        cf.join_sections([part, part], [cf.Overlap(**({"spans": 3} | change))])
+
+
+def test_sections_that_do_not_fit_are_named() -> None:
+    part, overlap = section(6), [cf.Overlap(spans=3)]
+    longer = part.replace(spans=tuple(span.replace(length=61.0) for span in part.spans))
+    with pytest.raises(cf.InputError, match="shared span 1 is 60 m in the section before and 61 m"):
+        cf.join_sections([part, longer], overlap)
+    with pytest.raises(cf.InputError, match="contact_wire_height differs"):
+        cf.join_sections([part, part.replace(contact_wire_height=5.5)], overlap)
+    with pytest.raises(cf.InputError, match="there must be one between"):
+        cf.join_sections([part, part, part], overlap)
+    line = cf.join_sections([part, part], overlap)
+    with pytest.raises(cf.InputError, match="belongs to a tension section"):
+        line.replace(contact_wire=part.messenger_wire)
+    with pytest.raises(cf.InputError, match="2 tension sections"):
+        cf.solve_modes(cf.find_form(line), count=3)
+
+
+def test_layout_file_of_several_sections(tmp_path, reference_layout) -> None:
+    text = reference_layout.read_text(encoding="utf-8").replace("evaluated_spans = [5, 6]", "")
+    path = tmp_path / "line.toml"
+    path.write_text(
+        text
+        + "\n[overlap]\nspans = 4\nlift = 0.3\n\n[[further_sections]]\ncount = 2\n\n[[further_sections]]\n"
+        '[further_sections.overlap]\nkind = "insulated"\n',
+        encoding="utf-8",
+    )
+    line = cf.load_catenary(path)
+    assert isinstance(line, cf.Line)
+    assert [overlap.spans for overlap in line.overlaps] == [4, 4, 3]
+    assert line.overlaps[2].gap == 0.4
+    assert len(line.spans) == 4 * 10 - 4 - 4 - 3
+    path.write_text(text + "\n[overlap]\nspans = 4\n", encoding="utf-8")
+    with pytest.raises(cf.InputError, match="no effect on a line of one section"):
+        cf.load_catenary(path)
