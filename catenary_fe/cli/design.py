@@ -11,10 +11,10 @@ import numpy as np
 from catenary_fe.cli import options
 from catenary_fe.cli.folder import Folder, output_folder
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
-from catenary_fe.layout import Catenary, load_catenary
+from catenary_fe.layout import Catenary, ends_in_words, load_catenary
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.rules import check_lengths, layout_warnings
-from catenary_fe.results.export import cell, common_name
+from catenary_fe.results.export import cell, check_xlsx, common_name
 from catenary_fe.results.quantities import decimals_of
 
 if TYPE_CHECKING:
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 DRAWN = 6  # shapes of modes in an output folder
 _DROPPERS = (
-    "span", "dropper", "chainage_m", "hangs_on", "contact_wire", "cut_length_mm", "installed_length_m",
-    "force_N", "contact_wire_height_error_mm",
+    "section", "span", "dropper", "chainage_m", "hangs_on", "contact_wire", "cut_length_mm",
+    "installed_length_m", "force_N", "contact_wire_height_error_mm",
 )  # fmt: skip
 _SUPPORTS = (
-    "support", "chainage_m", "stagger_m", "contact_wire_height_m", "system_height_m", "arm_vertical_N",
-    "arm_lateral_N", "messenger_vertical_N", "messenger_lateral_N",
+    "section", "support", "chainage_m", "stagger_m", "contact_wire_height_m", "system_height_m",
+    "arm_vertical_N", "arm_lateral_N", "messenger_vertical_N", "messenger_lateral_N",
 )  # fmt: skip
 _SHORT = {
     "chainage_m": "at m",
@@ -94,7 +94,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
     if catenary.stitch_wire:
         stitch = catenary.stitch_wire
         clamps += 2 * len(catenary.stitched_supports) * stitch.clamp_mass
-        line += len(catenary.stitched_supports) * stitch.mass_per_length * stitch.length / catenary.length
+        line += stitch.mass_per_length * float(catenary.stitch_wire_lengths.sum()) / catenary.length
     return {
         "name": catenary.name,
         "source": catenary.source,
@@ -108,6 +108,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "stitch_wires": len(catenary.stitched_supports),
         "largest_stagger_m": float(np.abs(catenary.staggers).max()),
         "largest_lateral_pull_N": float(np.abs(catenary.lateral_pulls).max()),
+        "wires_along_the_track": ends_in_words(catenary),
         "system_height_m": catenary.system_height if catenary.messenger_wire else None,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
@@ -133,15 +134,22 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
 @options.layout
 @options.flag("--design-lengths", "Find the lengths of the design, whatever lengths the layout gives.")
+@options.flag("--xlsx", "Write the tables as a workbook, too (with -o).")
 @options.drawn_spans
 @options.planar
 @options.answer()
-def form(layout: str, design_lengths: bool, spans: list[int] | None, planar: bool, answer: Answer) -> None:
+def form(
+    layout: str, design_lengths: bool, xlsx: bool, spans: list[int] | None, planar: bool, answer: Answer
+) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height.
     """
+    if xlsx:
+        if answer.folder is None:
+            raise click.UsageError("--xlsx writes a workbook: give -o DIR, too")
+        check_xlsx()
     catenary = options.read_layout(layout, planar)
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
@@ -160,7 +168,7 @@ def form(layout: str, design_lengths: bool, spans: list[int] | None, planar: boo
             from catenary_fe.views import plot_layout, plot_plan, plot_static_shape
 
             folder.json("form.json", result)
-            write_schedules(folder, shape)
+            write_schedules(folder, shape, xlsx)
             folder.picture("layout.png", plot_layout(catenary, shape, spans=spans))
             folder.picture("static_shape.png", plot_static_shape(shape, spans=spans))
             if catenary.is_spatial:
@@ -255,13 +263,18 @@ def modes(layout: str, count: int | None, below: float | None, planar: bool, ans
     answer.show(result, lambda: print_table(f"{catenary.name}: {title}", columns, table), shape)
 
 
-def write_schedules(folder: Folder, shape: Shape) -> None:
-    """Write the tables of droppers and supports as CSV, all columns on every line."""
+def write_schedules(folder: Folder, shape: Shape, xlsx: bool = False) -> None:
+    """Write the tables of droppers and supports as CSV, all columns on every line; perhaps as XLSX, too."""
+    from catenary_fe.results.export import write_xlsx
     from catenary_fe.statics import DropperRow
 
     droppers = [row.as_record() for row in shape.dropper_schedule()]
+    supports = [row.as_record() for row in shape.support_schedule()]
     folder.table("dropper_schedule.csv", droppers, columns=DropperRow.columns())
-    folder.table("support_schedule.csv", [row.as_dict() for row in shape.support_schedule()])
+    folder.table("support_schedule.csv", supports)
+    if xlsx:
+        sheets = {"droppers": (DropperRow.columns(), droppers), "supports": (list(supports[0]), supports)}
+        write_xlsx(folder.path / "schedules.xlsx", sheets)
 
 
 def print_schedules(shape: Shape) -> None:

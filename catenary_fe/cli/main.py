@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from catenary_fe.cli.design import form, info, modes, static
+from catenary_fe.cli.layouts import layout
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
 from catenary_fe.cli.run import run
 from catenary_fe.cli.stored import compare, export, film, report, rerun, view, waves
@@ -53,6 +54,7 @@ def commands() -> None:
 
 _SHORT_HELP = {
     info: "Check a layout: wave speeds, masses, drawing.",
+    layout: "Make layouts, from tables or by rules.",
     form: "Dropper lengths and the static shape.",
     static: "Elasticity along the line.",
     modes: "Eigenfrequencies and mode shapes.",

@@ -18,6 +18,7 @@ from catenary_fe.fe.installation import (
     element_pulls,
     element_values,
     point_masses,
+    wire_field,
     wire_kinds,
 )
 from catenary_fe.fe.mesh import Mesh
@@ -150,10 +151,27 @@ class _Restraints:
         return self.width * (int(self.mesh.first_nodes[wire]) + node) + axis
 
     def _ends(self) -> None:
-        """Contact and messenger wires are fixed along the track at the first node, pulled at the last."""
-        for number, kind in enumerate(wire_kinds(self.catenary, self.mesh)[: self.mesh.first_stitch]):
-            self.fixed[self.at(number, 0, 0)] = True
-            self.force[self.at(number, self.mesh.wires[number].x.size - 1, 0)] += kind.tension
+        """Contact and messenger wires are held or pulled along the track at their ends and at a midpoint.
+
+        Where friction takes tension at a support, that pulls along the track too.
+        """
+        catenary, mesh = self.catenary, self.mesh
+        for number, kind in enumerate(wire_kinds(catenary, mesh)[: mesh.first_stitch]):
+            wire, name = mesh.wires[number], wire_field(mesh, number)
+            pulls = kind.tension * catenary.tension_shares(name)
+            for node, end, pull in (
+                (0, catenary.begin.of(name), -pulls[0]),
+                (wire.x.size - 1, catenary.end.of(name), pulls[-1]),
+            ):
+                at = self.at(number, node, 0)
+                if end.kind == "fixed":
+                    self.fixed[at] = True
+                else:
+                    self._spring(at, end.stiffness or 0.0, 0.0, float(pull))
+            inner = [self.at(number, int(node), 0) for node in wire.supports[1:-1]]
+            self.force[inner] -= np.diff(pulls)
+            if catenary.midpoint:
+                self.fixed[self.at(number, int(wire.supports[catenary.midpoint - 1]), 0)] = True
 
     def _stitch_wires(self) -> None:
         mesh = self.mesh

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -144,10 +145,18 @@ def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
         np.full(wire.x.size - 1, kind.tension)
         for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
     ]
+    for pull, wire, shares in zip(pulls, mesh.wires, _tension_shares(catenary, mesh), strict=False):
+        pull *= np.repeat(shares, np.diff(wire.supports))
     for a, b in mesh.stitch_ends:
         assert catenary.stitch_wire is not None
         pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
     return pulls
+
+
+def _tension_shares(catenary: Catenary, mesh: Mesh) -> list[Floats]:
+    """Shape (spans,), for each contact and messenger wire, see :meth:`Catenary.tension_shares`."""
+    contact = catenary.tension_shares("contact_wire")
+    return [contact] * mesh.contact_wires + [catenary.tension_shares("messenger_wire")]
 
 
 def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
@@ -184,9 +193,30 @@ def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Float
         masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
     np.add.at(masses, *lumped(catenary, mesh))
     hanging = masses.copy()
+    for node, mass in _weights(catenary, mesh):
+        masses[node] += mass
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         if arm := support.steady_arm:
             for first, wire in zip(mesh.first_nodes, mesh.wires[: mesh.contact_wires], strict=False):
                 masses[first + wire.supports[i]] += arm.tip_mass
                 hanging[first + wire.supports[i]] += arm.hanging_mass
     return masses, hanging
+
+
+def _weights(catenary: Catenary, mesh: Mesh) -> list[tuple[int, float]]:
+    """Nodes at the ends of wires, which move along the track alone, and mass [kg] of their weights there.
+
+    Weights of T/(g i) that move i times as far as the wire are to it a mass of T i/g.
+    """
+    found = []
+    for number, kind in enumerate(wire_kinds(catenary, mesh)[: mesh.first_stitch]):
+        name = wire_field(mesh, number)
+        for node, end in ((0, catenary.begin), (mesh.wires[number].x.size - 1, catenary.end)):
+            if ratio := end.of(name).ratio:
+                found.append((int(mesh.first_nodes[number]) + node, ratio * kind.tension / GRAVITY))
+    return found
+
+
+def wire_field(mesh: Mesh, number: int) -> Literal["contact_wire", "messenger_wire"]:
+    """What a wire, no stitch wire, is called in a layout."""
+    return "contact_wire" if number < mesh.contact_wires else "messenger_wire"

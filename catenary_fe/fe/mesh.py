@@ -147,11 +147,11 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     at, low, below, hangs = _clamped(catenary)
     contact_wires = len(catenary.contact_wire_offsets)
     above = np.full(at.size, contact_wires)
-    half = catenary.stitch_wire.length / 2 if catenary.stitch_wire else 0.0
-    middles = catenary.support_positions[list(catenary.stitched_supports)]
-    for i, middle in enumerate(middles):
+    stitched = list(catenary.stitched_supports)
+    middles, halves = catenary.support_positions[stitched], catenary.stitch_wire_lengths[stitched] / 2
+    for i, (middle, half) in enumerate(zip(middles, halves, strict=True)):
         above[np.abs(at - middle) < half - _CLAMP_ROOM] = contact_wires + 1 + i
-    ends = np.stack([middles - half, middles + half], axis=1)
+    ends = np.stack([middles - halves, middles + halves], axis=1)
     extra = stations(catenary, "contact wire")
     lines = [
         _line_mesh(catenary, np.append(low[below == i], extra), settings, settings.contact_wire_element)

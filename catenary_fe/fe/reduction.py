@@ -320,7 +320,8 @@ class _Triplets:
 def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers]:
     """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or FIXED.
 
-    A gap's tension comes just before the gap's end.
+    A gap's tension comes just before the gap's end that is farther from where the wire is held along the
+    track: so each pivot is one without exchanging rows.
     """
     from scipy.sparse import block_diag, identity
 
@@ -333,7 +334,8 @@ def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, In
         station[(nodes[:, None] + across).ravel()] = np.repeat(line.x, across.size)
         station[wire.gap_ends[:, 1]] = wire.gap_x[1:]
         station[wire.gap_ends[0, 0]] = wire.gap_x[0]
-    station[whole:] = np.concatenate([wire.gap_x[1:] for wire in wires])
+    held = (system.dof == FIXED) | (system.ground_stiffness > 0)
+    station[whole:] = np.concatenate([_tension_stations(wire, held) for wire in wires])
     rows, columns = T.nonzero()
     of_free = np.full(T.shape[1], np.nan)
     of_free[columns] = station[rows]
@@ -344,6 +346,16 @@ def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, In
     place = np.full(T.shape[0], FIXED, dtype=np.int64)
     place[rows] = new[columns]
     return T[:, order].tocsr(), place
+
+
+def _tension_stations(wire: _ReducedWire, held: NDArray[np.bool_]) -> Floats:
+    """[m], shape (gaps,): the end of each gap that is farther from where the wire is held.
+
+    held : shape (all,), coordinates that are fixed or on a spring
+    """
+    at = np.flatnonzero(held[[wire.gap_ends[0, 0], *wire.gap_ends[:, 1]]])
+    first = int(at[0]) if at.size else 0  # of stitch wires, the messenger wire holds both ends
+    return np.where(np.arange(wire.tension.size) < first, wire.gap_x[:-1], wire.gap_x[1:])
 
 
 def _diagonal(values: Floats) -> Any:

@@ -1,13 +1,15 @@
 """What an engineer writes down: wires, droppers, supports, spans, pantographs; files and the library."""
 
 from catenary_fe.layout import library
+from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
+from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.line import Line, Overlap, ends_in_words, join_sections, read_catenary
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -20,8 +22,18 @@ from catenary_fe.layout.pantograph import (
     recorded_pantograph,
 )
 from catenary_fe.layout.parameters import GRAVITY
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import (
+    Dropper,
+    SectionEnd,
+    Span,
+    SteadyArm,
+    StitchWire,
+    Support,
+    Termination,
+    Wire,
+)
 from catenary_fe.layout.rules import layout_warnings
+from catenary_fe.layout.writer import layout_text
 
 __all__ = [
     "GRAVITY",
@@ -42,17 +54,24 @@ __all__ = [
     "PowerSystem",
     "RayleighDamping",
     "RunInterrupted",
+    "SectionEnd",
     "SolverError",
     "Span",
     "Stage",
     "SteadyArm",
     "StitchWire",
     "Support",
+    "Termination",
     "Wear",
     "Wire",
+    "build_line",
+    "catenary_from_tables",
     "counted",
+    "dropper_positions",
+    "ends_in_words",
     "join_sections",
     "layout_schema",
+    "layout_text",
     "layout_warnings",
     "library",
     "load_catenary",

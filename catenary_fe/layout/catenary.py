@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property, wraps
 from math import tan
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.equipment import Equipment
@@ -24,9 +24,11 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
 from catenary_fe.layout.track import messenger_staggers, support_bends
+
+Loss = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, lt=0.1)]
 
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
@@ -61,8 +63,9 @@ class Catenary(Parameters):
     """One tension section of a catenary: contact wire (or two), messenger wire, perhaps stitch wires.
 
     x runs along the track from the first support, y to the left of the track's centre, z upwards from the
-    rail. Contact and messenger wires end on the first and the last support: fixed at the first, tensioned by
-    weights (free to move along the track) at the last.
+    rail. Contact and messenger wires end on the first and the last support. Unless `begin`, `end` and
+    `midpoint` say otherwise they are fixed at the first, and tensioned by weights, free to move along the
+    track, at the last.
     """
 
     name: Text = "catenary"
@@ -86,6 +89,14 @@ class Catenary(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
+    begin: SectionEnd = SectionEnd(kind="fixed")
+    """what holds the wires along the track at the first support"""
+    end: SectionEnd = SectionEnd(kind="weights")
+    """what holds the wires along the track at the last support"""
+    midpoint: Annotated[int, Field(strict=True)] | None = None
+    """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    tension_loss: Loss = 0.0
+    """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
@@ -318,6 +329,13 @@ class Catenary(Parameters):
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
     @_fixed_array
+    def stitch_wire_lengths(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): of the stitch wires at the supports; 0 where none hangs."""
+        usual = self.stitch_wire.length if self.stitch_wire else 0.0
+        own = [s.stitch_wire_length or usual for s in self.supports]
+        return np.array([each if self.has_stitch_wire(i) else 0.0 for i, each in enumerate(own)])
+
+    @_fixed_array
     def staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
         return np.array([support.stagger for support in self.supports])
@@ -334,6 +352,21 @@ class Catenary(Parameters):
         Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
         """
         return self.contact_wire.tension * len(self.contact_wire_offsets) * support_bends(self)
+
+    def tension_shares(self, wire: Literal["contact_wire", "messenger_wire"]) -> NDArray[np.float64]:
+        """Shape (spans,): share of its nominal tension that a wire has in each span.
+
+        Friction takes some in a device at an end, and at each support from there to where the wire is held:
+        T_i = T η (1 − loss)^i behind i supports.
+        """
+        n, keeps = len(self.spans), 1 - self.tension_loss
+        ends = self.begin.of(wire), self.end.of(wire)
+        tensioned = [end.kind != "fixed" for end in ends]
+        held = self.midpoint - 1 if self.midpoint else 0 if tensioned[1] else n
+        span = np.arange(n)
+        before, behind = ends[0].efficiency * keeps**span, ends[1].efficiency * keeps ** (n - 1 - span)
+        shares: NDArray[np.float64] = np.where(span < held, before, behind)
+        return shares if any(tensioned) else np.ones(n)
 
     def planar(self) -> Self:
         """The same line in the vertical plane: no stagger, curves and cant, links as springs.
@@ -387,6 +420,9 @@ class Catenary(Parameters):
         return self.replace(
             spans=tuple(reversed(spans)),
             supports=self.supports[::-1],
+            begin=self.end,
+            end=self.begin,
+            midpoint=self.midpoint and n + 2 - self.midpoint,
             equipment=tuple(item.mirrored(self) for item in self.equipment),
             wear=tuple(wear.mirrored(self) for wear in self.wear),
             evaluated_spans=evaluated,

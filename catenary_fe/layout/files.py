@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.catenary import Catenary, Loss, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import Wear
@@ -27,7 +27,7 @@ from catenary_fe.layout.parameters import (
     problem_lines,
     shorten,
 )
-from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.toml import read_toml
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
@@ -167,6 +167,12 @@ class SectionEntry(Parameters):
     """supports that differ, numbered from the section's first one"""
     span: Annotated[tuple[SpanEntry, ...], NonEmpty] | None = None
     """the section's spans in order, those of its overlaps included"""
+    begin: SectionEnd | None = None
+    """what holds the wires along the track at the section's first support"""
+    end: SectionEnd | None = None
+    """what holds the wires along the track at the section's last support"""
+    midpoint: Annotated[int, Field(strict=True)] | None = None
+    """number of the support, from the section's first one, that holds the wires along the track"""
     equipment: tuple[Equipment, ...] = ()
     """within the section's spans; that of other sections is not repeated"""
     wear: tuple[Wear, ...] = ()
@@ -222,6 +228,14 @@ class LayoutFile(Parameters):
     """[m] nominal, above the rail"""
     system_height: Positive = 1.2
     """[m] between messenger wire and contact wire at the supports"""
+    begin: SectionEnd = SectionEnd(kind="fixed")
+    """what holds the wires along the track at the first support"""
+    end: SectionEnd = SectionEnd(kind="weights")
+    """what holds the wires along the track at the last support"""
+    midpoint: Annotated[int, Field(strict=True)] | None = None
+    """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    tension_loss: Loss = 0.0
+    """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()

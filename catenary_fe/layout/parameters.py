@@ -57,6 +57,7 @@ Positive = Annotated[
 ]
 Lateral = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-10, le=10)]  # [m]; refuses mm
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
+Share = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=1)]
 Text = Annotated[str, Field(strict=True)]
 
 

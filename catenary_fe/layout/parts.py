@@ -9,7 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from catenary_fe.layout.parameters import Lateral, NonNegative, Number, Parameters, Positive, Text, refuse
+from catenary_fe.layout.parameters import (
+    Lateral,
+    NonNegative,
+    Number,
+    Parameters,
+    Positive,
+    Share,
+    Text,
+    refuse,
+)
 from catenary_fe.layout.track import MOST_CANT
 from catenary_fe.theory import Beam
 
@@ -48,6 +57,64 @@ class Wire(Parameters):
     def impedance(self) -> float:
         """[N s/m] √(T ρ), force over velocity of a wave running one way."""
         return self.beam.impedance
+
+
+Kind = Literal["fixed", "weights", "spring"]
+
+
+class Termination(Parameters):
+    """What holds a wire along the track at an end of its tension section.
+
+    Weights keep its tension, whatever the wire does; a spring changes it with the wire's movement; between
+    two fixed ends the tension is an outcome, which starts from the wire's nominal one.
+    """
+
+    kind: Kind
+    """"fixed", "weights" or "spring\""""
+    stiffness: Positive | None = None
+    """[N/m] of a spring, along the track"""
+    ratio: Positive | None = None
+    """of weights: how far they move for each metre of the wire, 3 or 5; unset: their inertia is left out"""
+    efficiency: Share = 1.0
+    """of weights: share of the nominal tension that friction in the device leaves in the wire"""
+
+    @model_validator(mode="after")
+    def _of_its_kind(self) -> Self:
+        if (self.kind == "spring") != (self.stiffness is not None):
+            raise ValueError("stiffness: a spring needs one, and nothing else has one")
+        for name, unset in (("ratio", None), ("efficiency", 1.0)):
+            if self.kind != "weights" and getattr(self, name) != unset:
+                raise ValueError(f"{name} has no effect on an end that is {self.kind}; leave it out")
+        return self
+
+    @property
+    def in_words(self) -> str:
+        """One line."""
+        if self.kind == "weights":
+            ratio = f" of ratio 1:{self.ratio:g}" if self.ratio else ""
+            friction = f", efficiency {self.efficiency:g}" if self.efficiency < 1 else ""
+            return f"weights{ratio}{friction}"
+        return "fixed" if self.kind == "fixed" else f"spring of {self.stiffness:g} N/m"
+
+
+class SectionEnd(Termination):
+    """An end of a tension section: one termination for all its wires, or others for contact and messenger."""
+
+    contact_wire: Termination | None = None
+    """what holds contact wires here; unset: as all wires"""
+    messenger_wire: Termination | None = None
+    """what holds the messenger wire here; unset: as all wires"""
+
+    def of(self, wire: Literal["contact_wire", "messenger_wire"]) -> Termination:
+        """What holds this kind of wire."""
+        own: Termination | None = getattr(self, wire)
+        return own or self
+
+    @property
+    def of_both(self) -> str:
+        """What holds the wires, in one line."""
+        contact, messenger = self.of("contact_wire").in_words, self.of("messenger_wire").in_words
+        return contact if contact == messenger else f"contact wire {contact}, messenger wire {messenger}"
 
 
 class Dropper(Parameters):
@@ -286,6 +353,8 @@ class Support(Parameters):
     to the left; linear between supports"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""
+    stitch_wire_length: Positive | None = None
+    """[m] along the track of the stitch wire here; unset: that of the stitch wire itself"""
 
     @model_validator(mode="after")
     def _damping_needs_a_spring(self) -> Self:

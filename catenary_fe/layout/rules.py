@@ -46,9 +46,33 @@ def _faults_of_line(catenary: Catenary) -> Iterator[str]:
             "spatial = false, but stagger, curves or steady arms with a length leave the vertical plane;"
             " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
         )
+    yield from _faults_of_ends(catenary)
     for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
         if support.stagger and support.steady_arm is None:
             yield f"support {i}: stagger = {support.stagger:g} m without a steady_arm: nothing holds the wire"
+
+
+def _faults_of_ends(catenary: Catenary) -> Iterator[str]:
+    count, midpoint = len(catenary.supports), catenary.midpoint
+    if midpoint is not None and not 1 < midpoint < count:
+        yield f"midpoint = {midpoint}: must be a support inside the section, 2 to {count - 1}"
+    both = []
+    for wire in ("contact_wire", "messenger_wire"):
+        kinds = [end.of(wire).kind for end in (catenary.begin, catenary.end)]
+        both.append("fixed" not in kinds)
+        if kinds == ["weights", "weights"] and midpoint is None:
+            yield (
+                f"{wire}: weights at both ends and no midpoint: nothing holds it along the track; name the"
+                " support that does in midpoint, or fix an end"
+            )
+    if midpoint is not None and not any(both):
+        yield "midpoint has no effect where an end of each wire is fixed; leave it out, or tension both ends"
+    if catenary.tension_loss and all(
+        end.of(wire).kind == "fixed"
+        for end in (catenary.begin, catenary.end)
+        for wire in ("contact_wire", "messenger_wire")
+    ):
+        yield "tension_loss has no effect between fixed ends; leave it out"
 
 
 def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
@@ -98,10 +122,10 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
     if wire is None:
         return
     for i, span in enumerate(catenary.spans):
-        halves = sum(catenary.has_stitch_wire(n) for n in (i, i + 1))
-        if halves * wire.length / 2 >= span.length:
+        lengths = catenary.stitch_wire_lengths[i : i + 2]
+        if lengths.sum() / 2 >= span.length:
             yield (
-                f"span {i + 1}: stitch wires of {wire.length:g} m meet in a span of {span.length:g} m;"
+                f"span {i + 1}: stitch wires of {lengths.max():g} m meet in a span of {span.length:g} m;"
                 " shorten stitch_wire.length"
             )
     if catenary.messenger_wire and wire.tension >= catenary.messenger_wire.tension:
@@ -165,6 +189,7 @@ _SUPPORT: dict[str, Range] = {
     "messenger_stiffness": (1e4, 1e10, "N/m"),
     "messenger_lateral_stiffness": (1e3, 1e10, "N/m"),
     "system_height": (0.1, 4.0, "m"),
+    "stitch_wire_length": (4.0, 40.0, "m"),
 }
 _ARM: dict[str, Range] = {
     "length": (0.3, 3.0, "m"),
@@ -225,6 +250,13 @@ def _without_effect(catenary: Catenary) -> list[str]:
             found.setdefault(
                 "stitch", f"support {i}: stitch_wire = false has no effect: the line has no stitch wires"
             )
+        inside = 1 < i < len(catenary.supports)
+        if inside and support.stitch_wire_length is not None and not catenary.has_stitch_wire(i - 1):
+            found.setdefault(
+                "stitch length",
+                f"support {i}: stitch_wire_length = {support.stitch_wire_length:g} m has no effect: no stitch"
+                " wire hangs there",
+            )
     if catenary.cant_base != 1.5 and not any(support.cant for support in catenary.supports):
         found["cant"] = f"cant_base = {catenary.cant_base:g} m has no effect: no support has a cant"
     if catenary.messenger_wire is None:
@@ -257,7 +289,8 @@ def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
 def _anchored(catenary: Catenary) -> list[str]:
     """Values of a line's ends alone, which anchor the wires whatever is written there."""
     inert = ("steady_arm", "messenger_stiffness", "messenger_damping", "messenger_lateral_stiffness",
-             "messenger_lateral_damping", "stitch_wire")  # fmt: skip
+             "messenger_lateral_damping", "stitch_wire",
+             "stitch_wire_length")  # fmt: skip
     inner = catenary.supports[1:-1]
     return [
         f"support {i}: {name} has no effect at the line's end, which anchors both wires"

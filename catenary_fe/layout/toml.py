@@ -33,17 +33,28 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
 
     Raises InputError where it cannot be read or is none, with the line and, where it is known, the slip.
     """
-    content = _read_bytes(path, kind)
+    text = read_text(path, kind)
     try:
-        text = content.decode("utf-8-sig")
         return tomllib.loads(text)
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: {_wrong_encoding(content, error)}") from None
     except RecursionError:
         raise InputError(f"{path}: not a TOML file: lists or tables too deep inside one another") from None
     except ValueError as error:  # of TOML, and of whole numbers of thousands of digits
         slip = _slip(text, str(error))
         raise InputError(f"{path}: {slip}" if slip else f"{path}: not a TOML file: {error}") from None
+
+
+def read_text(path: Path, kind: str) -> str:
+    """The text of a file in UTF-8, with or without a byte order mark.
+
+    kind : of file, as an error calls it
+
+    Raises InputError where it cannot be read or is none, with the line.
+    """
+    content = _read_bytes(path, kind)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: {_wrong_encoding(content, error)}") from None
 
 
 def _wrong_encoding(content: bytes, error: UnicodeDecodeError) -> str:

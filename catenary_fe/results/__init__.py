@@ -23,7 +23,7 @@ from catenary_fe.results.criteria import (
     labels,
     missed,
 )
-from catenary_fe.results.export import history_tables, write_tables
+from catenary_fe.results.export import history_tables, save_catenary, write_tables
 from catenary_fe.results.modes import ModalRun, ModeKind, Modes, WireShapes
 from catenary_fe.results.quality import run_checks
 from catenary_fe.results.run import Run, load_run
@@ -36,5 +36,5 @@ __all__ = [
     "ModalRun", "ModeKind", "Modes", "Run", "WireHistory", "WireShapes", "band_pass", "checks_in_words",
     "criteria_in_words", "criteria_rows", "excess", "failed_checks", "force_statistics", "governing",
     "history_tables", "input_differences", "judge", "key_figures", "labels", "load_run", "low_pass",
-    "missed", "run_checks", "spectrum", "write_tables",
+    "missed", "run_checks", "save_catenary", "spectrum", "write_tables",
 ]  # fmt: skip

@@ -149,8 +149,9 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, 0.1 or 0.2 % of the time in
     losses of contact longer than 5 ms, clearance for twice the uplift at steady arms that state theirs
-    (``uplift_room``), contact within half the width of heads that state theirs, 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
-    it (:meth:`Run.with_elasticity`); no limit of it is known here.
+    (``uplift_room``), contact within half the width of heads that state theirs, 0.7 of the wave speed. The
+    elasticity's non-uniformity is reported where the run holds it (:meth:`Run.with_elasticity`); no limit of
+    it is known here.
 
     Raises InputError for a partial run.
     """
@@ -252,7 +253,7 @@ def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance
 
 
 def _lateral(figures: KeyFigures) -> Iterator[Criterion]:
-    """The contact stays on the part of the head that may touch, where the pantograph says how wide that is."""
+    """The contact stays on the part of the head that may touch, where the pantograph says how wide it is."""
     each = zip(figures.pantographs, figures.statistics, figures.lateral, strict=False)
     for pantograph, statistics, y in each:
         if y is not None and pantograph.head:

@@ -3,21 +3,39 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
+from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import InputError
-from catenary_fe.results.files import STRAY, atomic_write, cannot_be_written
+from catenary_fe.layout import Catenary, InputError, layout_text
+from catenary_fe.layout.arguments import checked
+from catenary_fe.results.files import STRAY, atomic_write, cannot_be_written, write_text
 from catenary_fe.results.quantities import DECIMALS, OF_HISTORIES, decimals_of
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 
 Floats = NDArray[np.float64]
 Table = dict[str, Floats]
+
+
+@checked
+def save_catenary(catenary: Catenary, path: str | Path, *, comment: str = "") -> Path:
+    """Write a catenary as a layout file, which :func:`load_catenary` reads as an equal one; returns its path.
+
+    comment : lines to stand above it
+
+    Raises InputError for a path that cannot be written, and for what the file format cannot say.
+    """
+    write_text(path, layout_text(catenary, comment=comment))
+    return Path(path)
 
 
 def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
@@ -119,3 +137,52 @@ def write_csv(
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows([cell(value, n) for value, n in zip(row, digits, strict=True)] for row in rows)
+
+
+def check_xlsx() -> None:
+    """Raises InputError where the package that writes workbooks is not there."""
+    if find_spec("openpyxl") is None:
+        raise InputError('a workbook needs the package openpyxl: pip install "catenary_fe[xlsx]"')
+
+
+def write_xlsx(path: Path, sheets: Mapping[str, tuple[Sequence[str], Sequence[Mapping[str, Any]]]]) -> None:
+    """Write a workbook (XLSX), with the digits that the columns' units are worth; the same bytes each time.
+
+    sheets : by name, columns and rows
+
+    Raises InputError where openpyxl is missing, or the file cannot be written.
+    """
+    check_xlsx()
+    from openpyxl import Workbook
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook()
+    assert book.active is not None
+    book.remove(book.active)
+    book.properties.created = book.properties.modified = datetime(2000, 1, 1)
+    for name, (columns, rows) in sheets.items():
+        sheet = book.create_sheet(name)
+        sheet.append(list(columns))
+        sheet.freeze_panes = "A2"
+        for number, column in enumerate(columns, start=1):
+            sheet.cell(1, number).font = Font(bold=True)
+            sheet.column_dimensions[get_column_letter(number)].width = max(8, len(column) + 2)
+        for row in rows:
+            sheet.append([_rounded(row[column], decimals_of(column)) for column in columns])
+            for number, column in enumerate(columns, start=1):
+                if isinstance(row[column], float) and (decimals := decimals_of(column)) is not None:
+                    sheet.cell(sheet.max_row, number).number_format = f"0.{'0' * decimals}".rstrip(".")
+    buffer = BytesIO()
+    book.save(buffer)
+    with atomic_write(path) as aside, ZipFile(buffer) as made, ZipFile(aside, "w", ZIP_DEFLATED) as kept:
+        for entry in made.infolist():
+            text = re.sub(rb"(<dcterms:modified[^>]*>)[^<]*", rb"\g<1>2000-01-01T00:00:00Z", made.read(entry))
+            kept.writestr(ZipInfo(entry.filename), text, ZIP_DEFLATED)  # without the time of day
+
+
+def _rounded(value: Any, decimals: int | None) -> Any:
+    """As :func:`cell`, as a number."""
+    if not isinstance(value, float | np.floating):
+        return value
+    return float(value) if decimals is None else round(float(value), decimals) + 0.0

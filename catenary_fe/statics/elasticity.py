@@ -12,7 +12,7 @@ from catenary_fe.layout import InputError
 from catenary_fe.layout.arguments import checked, number, numbers, on_the_wire, span_numbers, whole
 from catenary_fe.layout.parameters import changed_by_copy, shorten
 from catenary_fe.results import Elasticity
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 from catenary_fe.statics.loaded import LoadedLine
 
 Floats = NDArray[np.float64]
@@ -45,8 +45,14 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
 
     forces : pairs of position [m] along the line and upward force [N]
 
-    Raises InputError for positions beyond the line, SolverError if there is no equilibrium.
+    Raises InputError for positions beyond the line and for lines of several sections, SolverError if there
+    is no equilibrium.
     """
+    if isinstance(shape, LineShape):
+        raise InputError(
+            f"static state of {len(shape.sections)} tension sections, which do not move each other; take one"
+            " of shape.sections"
+        )
     pairs = numbers("forces", forces, each="pairs of position and force")
     if pairs.size and (pairs.ndim != 2 or pairs.shape[1] != 2):
         raise InputError(f"forces = {shorten(forces)}: must be pairs of position [m] and force [N]")

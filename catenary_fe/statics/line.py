@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -46,11 +46,25 @@ class LineShape(Shape):
 
     def dropper_schedule(self) -> list[DropperRow]:
         """The table that a crew cuts and hangs the droppers by, section by section."""
-        return [row for shape in self.sections for row in shape.dropper_schedule()]
+        return [
+            replace(row, section=n, chainage_m=row.chainage_m + begin)
+            for n, shape, begin in self._numbered
+            for row in shape.dropper_schedule()
+        ]
 
     def support_schedule(self) -> list[SupportRow]:
         """The table that a crew sets the supports by, section by section."""
-        return [row for shape in self.sections for row in shape.support_schedule()]
+        return [
+            replace(row, section=n, chainage_m=row.chainage_m + begin)
+            for n, shape, begin in self._numbered
+            for row in shape.support_schedule()
+        ]
+
+    @property
+    def _numbered(self) -> list[tuple[int, Shape, float]]:
+        """Each section's number, shape, and place along the line [m]."""
+        numbers = range(1, len(self.sections) + 1)
+        return list(zip(numbers, self.sections, self.catenary.begins, strict=True))
 
 
 def join_shapes(line: Line, shapes: Sequence[Shape]) -> LineShape:

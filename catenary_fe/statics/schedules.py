@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 class DropperRow:
     """One line of the dropper schedule.
 
+    section : number of the tension section, from 1, of a line that has several; spans, supports count in it
     span : number of the span, from 1
     from_support, to_support : numbers of the supports at its ends, from 1
     dropper : number of the dropper in its span, from 1
@@ -49,14 +50,16 @@ class DropperRow:
     contact_wire_height_error_mm: float
     hangs_on: str | None = None
     contact_wire: int | None = None
+    section: int | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """The row by column name; what the line leaves no choice in is left out."""
-        return {name: value for name, value in asdict(self).items() if value is not None}
+        return {name: getattr(self, name) for name in self.columns() if getattr(self, name) is not None}
 
     def as_record(self) -> dict[str, Any]:
         """All columns, the same ones on every line."""
-        return asdict(self) | {
+        return {name: getattr(self, name) for name in self.columns()} | {
+            "section": self.section or 1,
             "hangs_on": self.hangs_on or "messenger wire",
             "contact_wire": self.contact_wire or 1,
         }
@@ -64,7 +67,7 @@ class DropperRow:
     @classmethod
     def columns(cls) -> list[str]:
         """Names of all columns."""
-        return [field.name for field in fields(cls)]
+        return ["section", *(field.name for field in fields(cls) if field.name != "section")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +101,7 @@ class ArmRow:
 class SupportRow:
     """One line of the support schedule; what does not apply is None.
 
+    section : number of the tension section, from 1, of a line that has several; supports count in it
     support : number, from 1
     chainage_m : from the line's first support
     span_before_m, span_after_m : lengths of the spans on either side
@@ -128,11 +132,18 @@ class SupportRow:
     messenger_wire_tension_kN: float | None  # noqa: N815
     stitch_wire_tension_kN: float | None = None  # noqa: N815
     stitch_wire_length_m: float | None = None
+    section: int | None = None
+
+    def as_record(self) -> dict[str, Any]:
+        """As :meth:`as_dict`, with the number of the section on every line."""
+        return {"section": self.section or 1} | self.as_dict()
 
     def as_dict(self) -> dict[str, Any]:
         """The row by column name, arms flattened: ``arm_radial_N``, or of two wires ``arm_1_radial_N``."""
-        found: dict[str, Any] = {}
-        for name, value in asdict(self).items():
+        found: dict[str, Any] = {"section": self.section} if self.section else {}
+        for name, value in asdict(replace(self, section=None)).items():
+            if name == "section":
+                continue
             if name != "arms":
                 found[name] = value
                 continue
@@ -194,7 +205,7 @@ def _support_row(shape: Shape, i: int, pulls: Floats | None) -> SupportRow:
         contact_wire_tension_kN=catenary.contact_wire.tension / 1e3,
         **_of_messenger(shape, i, arms[0].contact_wire_height_m, pulls),
         stitch_wire_tension_kN=stitch.tension / 1e3 if stitch else None,
-        stitch_wire_length_m=stitch.length if stitch else None,
+        stitch_wire_length_m=float(catenary.stitch_wire_lengths[i]) if stitch else None,
     )
 
 

@@ -246,8 +246,8 @@ def _sketch(catenary: Catenary) -> list[tuple[Floats, Floats]]:
     messenger = along, np.interp(along, supports, heights) - sag
     points = [(x[order], z[order])] * contact_wires + [messenger]
     if catenary.stitch_wire:
-        for middle in supports[list(catenary.stitched_supports)]:
-            ends = middle + catenary.stitch_wire.length / 2 * np.array([-1.0, 1.0])
+        for support in catenary.stitched_supports:
+            ends = supports[support] + catenary.stitch_wire_lengths[support] / 2 * np.array([-1.0, 1.0])
             points.append((ends, np.interp(ends, *messenger)))
     return points
 
@@ -272,8 +272,8 @@ def upper_wires(catenary: Catenary, shape: Shape | None) -> NDArray[np.int64]:
         at, contact_wires = section.dropper_positions, len(section.contact_wire_offsets)
         own = np.full(at.size, contact_wires)
         for i, support in enumerate(section.stitched_supports, start=1):
-            assert section.stitch_wire is not None
-            near = np.abs(section.support_positions[support] - at) < section.stitch_wire.length / 2
+            half = section.stitch_wire_lengths[support] / 2
+            near = np.abs(section.support_positions[support] - at) < half
             own[near] = contact_wires + i
         wires.append(place[first + own])
         first += len(_names(section))

@@ -87,7 +87,7 @@ SUPPORT = {
     "messenger_stiffness": 4e5, "messenger_damping": 20.0, "messenger_lateral_stiffness": 2e5,
     "messenger_lateral_damping": 20.0, "system_height": 1.3, "contact_wire_height": 5.495,
     "stagger": 0.1, "messenger_stagger": 0.05,
-    "stitch_wire": False, "cant": 0.1,
+    "stitch_wire": False, "stitch_wire_length": 12.0, "cant": 0.1,
 }  # fmt: skip
 DROPPER = {
     "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
@@ -224,7 +224,8 @@ ELSEWHERE = {
     "stagger": "space", "curve_radius": "space", "messenger_lateral_stiffness": "space",
     "messenger_lateral_damping": "space", "messenger_stagger": "space", "length": "space",
     "mass_per_length": "space", "clamp_mass": "space", "inclination": "space", "side": "space",
-    "holds_design_height": "many wires", "cant": "space", "cant_base": "space", "curve_radius_end": "space",
+    "holds_design_height": "many wires", "stitch_wire_length": "many wires", "cant": "space",
+    "cant_base": "space", "curve_radius_end": "space",
 }  # fmt: skip
 REFUSED = {
     "wear.span": "beside begin and end", "wear.contact_wire": "there is one",
@@ -307,6 +308,9 @@ INERT = {  # values that change nothing on a line, and what is said
         "plane", {"support.messenger_lateral_stiffness": 1e5}, "has no effect in the vertical plane"
     ),
     "no stitch wires": ("plane", {"support.stitch_wire": False}, "the line has no stitch wires"),
+    "a length where no stitch wire hangs": (
+        "plane", {"support.stitch_wire_length": 14.0}, "stitch_wire_length = 14 m has no effect"
+    ),
     "no support for a stitch wire": (
         "many wires", {"support.stitch_wire": False}, "stitch_wire has no effect"
     ),

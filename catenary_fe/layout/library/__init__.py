@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Literal
 
 from catenary_fe.layout.arguments import checked, number, one_of, whole
 from catenary_fe.layout.catenary import Catenary
@@ -15,6 +15,8 @@ from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.pantograph import Pantograph
 from catenary_fe.layout.parameters import Lateral, Number, Parameters, Positive, Text, shorten
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, StitchWire, Support, Wire
+
+DropperRule = Literal["Re", "France", "CA-220", "CA-160"]
 
 
 class Line(Parameters):
@@ -26,6 +28,8 @@ class Line(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: Wire
     """with its tension"""
+    contact_wire_spacing: Positive | None = None
+    """[m] sideways between two equal contact wires; unset: one contact wire"""
     messenger_wire: Wire
     """with its tension"""
     span_length: Positive
@@ -44,6 +48,8 @@ class Line(Parameters):
     """[m] along the track, half of it to each side of the support"""
     dropper: Dropper | None = None
     """what the droppers have in common, where known (position 0)"""
+    dropper_rule: DropperRule | None = None
+    """by which the droppers are placed, where known: :func:`build_line` builds the line by it"""
 
     @checked
     def catenary(self, *, spans: int = 10, dropper_spacing: float = 6.0, steady_arm: SteadyArm) -> Catenary:
@@ -71,6 +77,7 @@ class Line(Parameters):
             name=self.name,
             source=self.source,
             contact_wire=self.contact_wire,
+            contact_wire_spacing=self.contact_wire_spacing,
             messenger_wire=self.messenger_wire,
             stitch_wire=stitch_wire,
             spans=(Span(length=self.span_length, droppers=droppers, pre_sag=self.pre_sag),) * spans,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted
+from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted, ends_in_words
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -184,6 +184,7 @@ def _line_table(catenary: Catenary) -> Table:
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", _system_height(catenary)),
         ("steady arms", _arms(catenary)),
+        ("wires along the track", ends_in_words(catenary)),
         *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
@@ -236,7 +237,8 @@ def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
-        rows.append(("stitch wires", f"{catenary.stitch_wire.length:g} m long"))
+        lengths = catenary.stitch_wire_lengths[list(catenary.stitched_supports)]
+        rows.append(("stitch wires", f"{_range(lengths)} m long"))
     return rows
 
 
