@@ -71,12 +71,13 @@ class Wear(Parameters):
 
 def changes_of(catenary: Catenary) -> dict[str, int]:
     """How many of each change there are since the droppers were cut, by their names in words."""
-    all_of = [dropper for span in catenary.spans for dropper in span.droppers]
+    parts = getattr(catenary, "sections", ()) or (catenary,)
+    all_of = [dropper for part in parts for span in part.spans for dropper in span.droppers]
     found = {
         "dropper missing": sum(d.state == "missing" for d in all_of),
         "dropper broken": sum(d.state == "broken" for d in all_of),
         "clamp slid": sum(bool(d.clamp_shift) and d.state is None for d in all_of),
-        "range of worn contact wire": len(catenary.wear),
+        "range of worn contact wire": sum(len(part.wear) for part in parts),
     }
     return {name: count for name, count in found.items() if count}
 
