@@ -24,6 +24,7 @@ equipment = [{ x = 20.0, mass = 8.0, length = 2.0, bending_stiffness = 2e3 }]
 contact_wire = { library = "AC-120 CuMg", tension = 15e3 }
 messenger_wire = { library = "BzII 70", tension = 12e3, bending_stiffness = 50.0 }
 damping = { alpha = 0.01, beta = 1e-4 }
+wear = [{ begin = 5.0, end = 20.0, area_left = 0.9 }]
 dropper = { stiffness = 1e5, damping = 5.0, mass_per_length = 0.1, messenger_clamp_mass = 0.1 }
 [support]
 messenger_stiffness = 5e5
@@ -95,6 +96,7 @@ SUPPORT = {
 DROPPER = {
     "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
     "messenger_clamp_mass": 0.3, "contact_wire_clamp_mass": 0.3, "height_offset": -0.005, "contact_wire": 2,
+    "state": "missing", "clamp_shift": 0.2,
 }  # fmt: skip
 LAYOUT: dict[str, Any] = {
     "name": "another", "source": "elsewhere", "contact_wire_spacing": 0.06, "stagger": 0.25,
@@ -103,6 +105,7 @@ LAYOUT: dict[str, Any] = {
     "equipment.x": 22.0, "equipment.span": 1, "equipment.position": 3.0, "equipment.mass": 9.0,
     "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
     "equipment.name": "an insulator", "equipment.source": "elsewhere",
+    "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
     "cant_base": 1.1, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
     "midpoint": 2, "tension_loss": 0.01,
@@ -237,6 +240,7 @@ ELSEWHERE = {
     "cant_base": "space", "curve_radius_end": "space",
 }  # fmt: skip
 REFUSED = {
+    "wear.span": "beside begin and end", "wear.contact_wire": "there is one",
     "equipment.span": "beside x", "equipment.position": "beside x",
     "dropper.position": "each span has its own", "support.stagger": "the layout's alternates",
     "support.steady_arm.side": "half of the links would push", "span.droppers.length": "others have none",
@@ -248,17 +252,18 @@ REFUSED |= {
     for end in ("begin", "end")
     for wire in ("", ".contact_wire", ".messenger_wire")
     for key in ("kind", "stiffness", "ratio", "efficiency")
-    if (end, wire) != ("end", "") and key != "kind" or end == "begin" or (wire, key) == ("", "stiffness")
+    if ((end, wire) != ("end", "") and key != "kind") or end == "begin" or (wire, key) == ("", "stiffness")
 } | {"midpoint": "one end is fixed"}
 
 
 def base_of(place: str) -> str:
     owner, _, last = place.rpartition(".")
-    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment"):
+    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment", "wear"):
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return (
             ELSEWHERE.get(last, "plane")
-            if last in ("contact_wire", "curve_radius", "curve_radius_end")
+            if owner != "wear"
+            and last in ("contact_wire", "curve_radius", "curve_radius_end")
             else of_owner
         )
     return ELSEWHERE.get(last, "plane")
@@ -270,6 +275,11 @@ def test_a_key_of_a_layout_acts(place, results):
     assert outcome(base_of(place), place, results) == ("refused" if place in REFUSED else expected)
 
 
+def droppers(line: cf.Catenary) -> list[cf.Dropper]:
+    """Those of the design."""
+    return [dropper for span in line.spans for dropper in span.droppers]
+
+
 @pytest.mark.parametrize("place", [p for p in LAYOUT if p.startswith(("supports.", "span.droppers."))])
 def test_a_key_of_one_support_or_dropper_reaches_it(place):
     """What it does there is what it does in all."""
@@ -279,7 +289,7 @@ def test_a_key_of_one_support_or_dropper_reaches_it(place):
         assert line == before  # an entry with nothing in it
         return
     parts = (
-        (line.supports, before.supports) if place.startswith("supports") else (line.droppers, before.droppers)
+        (line.supports, before.supports) if place.startswith("supports") else (droppers(line), droppers(before))
     )
     changed = [a for a, b in zip(*parts, strict=True) if a != b]
     found = changed[0].steady_arm if "steady_arm" in place else changed[0]
