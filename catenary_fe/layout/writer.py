@@ -84,10 +84,15 @@ def layout_record(catenary: Catenary) -> _Record:
 
 
 def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap) -> _Record:
-    """An entry of a further section: its wires where they are others, its supports and spans."""
+    """An entry of a further section: its wires and ends where they are others, its supports and spans."""
     wires = {
         name: _wire(getattr(section, name))
         for name in ("contact_wire", "messenger_wire", "stitch_wire")
+        if getattr(section, name) not in (None, getattr(first, name))
+    }
+    wires |= {
+        name: _plain(getattr(section, name))
+        for name in ("begin", "end", "midpoint", "midpoint_position")
         if getattr(section, name) not in (None, getattr(first, name))
     }
     head = {"overlap": {"spans": overlap.spans, "kind": overlap.kind, "as_written": True}}
