@@ -29,7 +29,7 @@ class Wire(Parameters):
     mass_per_length: Positive
     """[kg/m] of the wire as installed"""
     tension: Positive
-    """[N] along the wire, held by tensioning weights"""
+    """[N] along the wire as installed, which the devices at its ends are set for"""
     axial_stiffness: Positive
     """[N] EA, cross-section times Young's modulus"""
     bending_stiffness: NonNegative = 0.0
@@ -104,6 +104,16 @@ class SectionEnd(Termination):
     """what holds contact wires here; unset: as all wires"""
     messenger_wire: Termination | None = None
     """what holds the messenger wire here; unset: as all wires"""
+
+    @model_validator(mode="after")
+    def _some_wire_ends_on_it(self) -> Self:
+        if self.contact_wire and self.messenger_wire:
+            for name in ("stiffness", "ratio", "efficiency"):
+                if getattr(self, name) != type(self).model_fields[name].default:
+                    raise ValueError(
+                        f"{name} has no effect where contact_wire and messenger_wire have ends of their own"
+                    )
+        return self
 
     def of(self, wire: Literal["contact_wire", "messenger_wire"]) -> Termination:
         """What holds this kind of wire."""

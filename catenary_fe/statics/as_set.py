@@ -62,8 +62,6 @@ def mast_springs(catenary: Catenary, wires: TautWires, as_set: Shape) -> MastSpr
             height = as_set.messenger_wire.z[as_set.mesh.messenger.supports[i]]
             node = mesh.first_nodes[mesh.contact_wires] + mesh.messenger.supports[i]
             force = then.support_forces[i]
-            found.append(
-                (int(wires.dof[node]), float(force[-1]), float(height), support.messenger_stiffness)
-            )
+            found.append((int(wires.dof[node]), float(force[-1]), float(height), support.messenger_stiffness))
     columns = np.array(found).reshape(-1, 4).T
     return MastSprings(columns[0].astype(np.int64), *columns[1:])

@@ -262,8 +262,7 @@ def base_of(place: str) -> str:
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return (
             ELSEWHERE.get(last, "plane")
-            if owner != "wear"
-            and last in ("contact_wire", "curve_radius", "curve_radius_end")
+            if owner != "wear" and last in ("contact_wire", "curve_radius", "curve_radius_end")
             else of_owner
         )
     return ELSEWHERE.get(last, "plane")
@@ -289,7 +288,9 @@ def test_a_key_of_one_support_or_dropper_reaches_it(place):
         assert line == before  # an entry with nothing in it
         return
     parts = (
-        (line.supports, before.supports) if place.startswith("supports") else (droppers(line), droppers(before))
+        (line.supports, before.supports)
+        if place.startswith("supports")
+        else (droppers(line), droppers(before))
     )
     changed = [a for a, b in zip(*parts, strict=True) if a != b]
     found = changed[0].steady_arm if "steady_arm" in place else changed[0]
@@ -457,7 +458,7 @@ def test_a_key_of_a_further_section_acts_there_or_is_refused(key):
     assert isinstance(before, cf.Line)
     record["further_sections"][0][key] = SECTION[key]
     if key in ("begin", "midpoint", "curve_radius"):  # each by itself does not fit
-        with pytest.raises(cf.InputError, match="weights at both ends|midpoint has no|curve_radius differs"):
+        with pytest.raises(cf.InputError, match=r"weights at both ends|midpoint has no|curve_radius differs"):
             line_of(record)
         return
     line = line_of(record)
