@@ -22,8 +22,10 @@ _WHOLE = Column("whole")
 MAST_COLUMNS = {
     "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
     "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
-    "messenger_stagger": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
-    "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE, "uplift_room": _SIZE,
+    "messenger_stagger": _LENGTH, "cant": _LENGTH,
+    "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
+    "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE,
+    "uplift_room": _SIZE,
     "arm_kind": Column("text", words=("link", "spring", "none")),
     "arm_side": Column("text", words=("left", "right")), "arm_length": _SIZE,
     "arm_stiffness": Column("stiffness", least=0.0),
@@ -32,7 +34,8 @@ MAST_COLUMNS = {
      "messenger_vertical", "messenger_lateral", "contact_wire_tension", "messenger_wire_tension",
      "stitch_wire_tension"), _RESULT
 )  # fmt: skip
-"""Columns of a mast table. ``curve_radius_after``, ``pre_sag``: of the span that begins at the mast."""
+"""Columns of a mast table. ``curve_radius_after``, ``pre_sag``: of the span that begins at the mast; of a
+transition curve ``curve_radius_before`` of the next mast differs."""
 DROPPER_COLUMNS = {
     "section": _WHOLE, "span": _WHOLE, "from_support": _WHOLE, "to_support": _WHOLE, "dropper": _WHOLE,
     "chainage": _LENGTH, "position": _SIZE, "length": _SIZE, "cut_length": _SIZE, "height_offset": _LENGTH,
@@ -182,10 +185,10 @@ def _check_spans(table: Table, lengths: Sequence[float]) -> None:
     radii = [row.get("curve_radius_after") for row in table.rows]
     for i, row in enumerate(table.rows):
         before = row.get("curve_radius_before")
-        if before and (i == 0 or before != radii[i - 1]):
+        if before and (i == 0 or radii[i - 1] is None):
             faults.append(
                 f"{table.where(i, 'curve_radius_before')}: {before:g} m: the row before must have it as"
-                " curve_radius_after"
+                " curve_radius_after, or of a transition curve another one, 0 where that begins straight"
             )
     for name in ("curve_radius_after", "pre_sag"):
         if table.rows[-1].get(name):
@@ -201,7 +204,9 @@ def _with_own(table: Table, spans: Sequence[Span]) -> tuple[Span, ...]:
     found, faults = [], []
     for i, span in enumerate(spans):
         row = table.rows[i]
-        own = {"curve_radius": row.get("curve_radius_after") or None}
+        begin, end = row.get("curve_radius_after"), table.rows[i + 1].get("curve_radius_before")
+        own: dict[str, Any] = {"curve_radius": begin or None, "curve_radius_end": None}
+        own |= {"curve_radius_end": end} if end is not None and end != (begin or 0.0) else {}
         own |= {"pre_sag": row["pre_sag"]} if row.get("pre_sag") is not None else {}
         try:
             found.append(span.replace(**own))
@@ -240,7 +245,7 @@ def _supports(table: Table, pattern: LinePattern, lengths: Sequence[float]) -> t
     found = []
     for i, row in enumerate(table.rows):
         inside = 0 < i < len(table.rows) - 1
-        own = {name: row[name] for name in ("stagger", "messenger_stagger") if row.get(name) is not None}
+        own = {n: row[n] for n in ("stagger", "messenger_stagger", "cant") if row.get(n) is not None}
         for name in ("contact_wire_height", "system_height"):
             if row.get(name) is not None and row[name] != getattr(pattern.line, name):
                 own[name] = row[name]

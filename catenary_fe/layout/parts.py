@@ -206,9 +206,18 @@ class Span(Parameters):
         return begin, 1 / self.curve_radius_end if self.curve_radius_end else 0.0
 
     def radius_at(self, end: bool) -> float | None:
-        """[m] of the track at the span's beginning or end, positive to the left; None: straight there."""
+        """[m] of the track at the span's beginning or end, positive to the left.
+
+        None of a straight span, 0 where a transition curve is straight.
+        """
         curvature = self.curvatures[end]
-        return 1 / curvature if curvature else None
+        if not any(self.curvatures):
+            return None
+        return (
+            (self.curve_radius_end if end and self.curve_radius_end else self.curve_radius)
+            if curvature
+            else 0.0
+        )
 
     @field_validator("droppers")
     @classmethod

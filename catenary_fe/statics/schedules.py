@@ -105,7 +105,9 @@ class SupportRow:
     support : number, from 1
     chainage_m : from the line's first support
     span_before_m, span_after_m : lengths of the spans on either side
-    curve_radius_before_m, curve_radius_after_m : of the track there, positive to the left
+    curve_radius_before_m, curve_radius_after_m : of the track there, positive to the left; 0 where a
+        transition curve is straight
+    cant_m : of the right rail above the left one
     arms : of each contact wire, the right one first
     messenger_wire_height_m : above the rail
     system_height_m : of the messenger wire above the (right) contact wire
@@ -122,6 +124,7 @@ class SupportRow:
     span_after_m: float | None
     curve_radius_before_m: float | None
     curve_radius_after_m: float | None
+    cant_m: float
     arms: tuple[ArmRow, ...]
     messenger_wire_height_m: float | None
     system_height_m: float | None
@@ -200,6 +203,7 @@ def _support_row(shape: Shape, i: int, pulls: Floats | None) -> SupportRow:
         span_after_m=after.length if after else None,
         curve_radius_before_m=before.radius_at(end=True) if before else None,
         curve_radius_after_m=after.radius_at(end=False) if after else None,
+        cant_m=catenary.supports[i].cant,
         arms=arms,
         contact_wire_tension_kN=catenary.contact_wire.tension / 1e3,
         **_of_messenger(shape, i, arms[0].contact_wire_height_m, pulls),

@@ -112,13 +112,27 @@ def test_a_messenger_wire_that_follows_hangs_above_the_contact_wire():
     shape = cf.find_form(curves)
     rows = shape.support_schedule()
     assert [row.messenger_stagger_m for row in rows] == pytest.approx(curves.messenger_staggers, abs=1e-12)
-    assert (rows[1].curve_radius_before_m, rows[1].curve_radius_after_m) == (None, None)
+    assert (rows[1].curve_radius_before_m, rows[1].curve_radius_after_m) == (None, 0.0)
     assert (rows[2].curve_radius_before_m, rows[3].curve_radius_after_m) == pytest.approx((1500.0, 900.0))
     # in a canted track plumb is to the outside of the track's own axis
     canted = line(cants=(0.15,) * 7, messenger_stagger="follows")
     assert canted.messenger_staggers == pytest.approx(-1.4 * 0.1)
     plane = line(messenger_stagger="in curves").replace(spatial=None)
     assert not plane.is_spatial and not follows.replace(spatial=None).planar().is_spatial
+
+
+def test_tables_of_a_line_in_transition_curves_with_cant_give_the_same_track(tmp_path):
+    from catenary_fe.layout import catenary_from_tables
+    from catenary_fe.results.export import write_csv
+
+    catenary = line(RADII, (0.0, 0.0, -0.1, -0.2, -0.2, 0.0, 0.1), CANTS, messenger_stagger="in curves")
+    rows = [row.as_dict() for row in cf.find_form(catenary).support_schedule()]
+    write_csv(tmp_path / "masts.csv", list(rows[0]), [list(row.values()) for row in rows])
+    read = catenary_from_tables(tmp_path / "masts.csv", base=line())
+    assert [s.curvatures for s in read.spans] == [s.curvatures for s in catenary.spans]
+    assert [s.cant for s in read.supports] == list(CANTS)
+    assert read.messenger_staggers == pytest.approx(catenary.messenger_staggers, abs=1e-3)
+    assert read.staggers == pytest.approx(catenary.staggers)
 
 
 @pytest.fixture(scope="module")
