@@ -103,6 +103,23 @@ def test_a_canted_line_seen_from_the_level_is_the_same_line():
     assert b.dropper_lengths == pytest.approx(a.dropper_lengths, abs=6e-3)
 
 
+def test_weight_on_canted_track_hangs_to_the_lower_rail():
+    """A contact wire alone and a mass on it: g sin φ of both, ρ g L²/(8 T) and m g L/(4 T) at mid-span."""
+    arm, mass = cf.Support(steady_arm=cf.SteadyArm(stiffness=1e6), cant=0.15), 12.0
+    alone = cf.Catenary(
+        contact_wire=CONTACT, spans=(cf.Span(length=L, droppers=()),) * 3, supports=(arm,) * 4,
+        equipment=(cf.Equipment(x=75.0, mass=mass),),
+    )  # fmt: skip
+    shape, own = cf.find_form(alone), 1.07 * 9.81 * L**2 / (8 * T)
+    lean = np.sin(0.1)
+    assert shape.wires[0].lateral(25.0) == pytest.approx(lean * own, rel=5e-3)
+    assert shape.wires[0].lateral(75.0) == pytest.approx(lean * (own + mass * 9.81 * L / (4 * T)), rel=5e-3)
+    # the assembled system has the same forces: what balances it at kinks adds up to nothing about the mass
+    lateral = shape.installation.balance.reshape(-1, 6)[:, 1]
+    near = np.abs(shape.contact_wire_x - 75.0) < 15.0
+    assert lateral[near].sum() == pytest.approx(0.0, abs=0.01 * lean * mass * 9.81)
+
+
 def test_a_messenger_wire_that_follows_hangs_above_the_contact_wire():
     staggers = (0.2, 0.1, -0.2, -0.2, -0.2, 0.2, -0.2)
     follows = line(RADII, staggers, messenger_stagger="follows")
