@@ -13,7 +13,7 @@ import click
 from catenary_fe.cli.folder import folder_of, read_record
 from catenary_fe.cli.terminal import progress_bar, say
 from catenary_fe.layout import PowerSystem
-from catenary_fe.results.quantities import UPLIFT
+from catenary_fe.results.quantities import LATERAL, UPLIFT
 from catenary_fe.results.signal import FilterKind
 
 if TYPE_CHECKING:
@@ -118,6 +118,7 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         catenary=case.catenary,
         pantographs=case.pantographs,
         statistics=statistics,
+        lateral=[None if y is None else LATERAL.si(y) for y in summary.get("contact_lateral_mm", [])],
         uplift={int(n): UPLIFT.si(lift) for n, lift in summary["support_uplift_mm"].items()},
     )
     criteria = judge(figures, system) if system else []

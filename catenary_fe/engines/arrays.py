@@ -110,6 +110,7 @@ class Records(NamedTuple):
     """Histories by slot, the last axis being the step.
 
     force, height : (slots, contacts, steps + 1), height above the nominal one
+    lateral : likewise, of the wire to the left of the head's middle; in the plane of no steps
     masses : (slots, pantographs, coordinates, steps + 1)
     droppers : (slots, droppers, steps + 1)
     supports : (slots, contact wires * supports, steps + 1), uplift
@@ -120,6 +121,7 @@ class Records(NamedTuple):
 
     force: Floats
     height: Floats
+    lateral: Floats
     masses: Floats
     droppers: Floats
     supports: Floats
@@ -143,6 +145,7 @@ class Work(NamedTuple):
         from which row on, in how many
     shape, rise : shape (slots, contacts, 5), weights of height and inclination; last, at rest
     at : shape (slots, contacts, 4), coordinates that they weigh
+    node : shape (slots, contacts), first node of the element there
     on : shape (slots, contacts), 1 where a strip is between the ends of its wire
     base : [m], shape (slots, contacts), height of strips that no body carries
     head, head_compliance : shape (slots, contacts, coordinates), height of the head there, how it yields
@@ -160,6 +163,7 @@ class Work(NamedTuple):
     shape: Floats
     rise: Floats
     at: Integers
+    node: Integers
     on: Integers
     base: Floats
     head: Floats

@@ -75,6 +75,7 @@ def weigh_contact(
         work.shape[c, j, :4], work.shape[c, j, 4] = 0.0, np.nan
         work.rise[c, j, :], work.at[c, j, :] = 0.0, -1
         work.force[c, j] = 0.0
+        work.node[c, j] = begin
         return begin, 0.0
     e, above = begin, end - 1
     while above - e > 1:  # np.searchsorted takes seconds to compile
@@ -101,7 +102,23 @@ def weigh_contact(
         rise[4] += rise[m] * line.profile[node, which]
         lateral += shape[m] * line.lateral[node, which]
         at[m] = line.at[node, which]
+    work.node[c, j] = e
     return e, lateral
+
+
+@compiled
+def lateral_place(scheme: Scheme, line: Any, wires: Wires, work: Work, c: int, j: int) -> float:
+    """[m] of the wire to the left at a contact at the step's end; no number beyond the wire's ends."""
+    if not work.on[c, j]:
+        return float(np.nan)
+    y = 0.0
+    for m in range(4):
+        node, which = work.node[c, j] + m // 2, m % 2
+        y += work.shape[c, j, m] * line.lateral[node, which]
+        i = line.across[node, which]
+        if i >= 0:
+            y += work.shape[c, j, m] * (wires.q[i, c] + scheme.b * wires.x[i, c])
+    return y
 
 
 @compiled

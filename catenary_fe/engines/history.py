@@ -39,6 +39,8 @@ class History:
     tension_span : shape (wires, tension_times), number of the span (from 1) where that is
     tension_times : [s]
     notes : what to warn of in the result
+    contact_lateral : [m], for each pantograph shape (contacts, times), of the wire to the left of the head's
+        middle at each strip on each contact wire; no number without contact. In the plane of no times
     section_force : [N], shape (pantographs, sections, times), of the contact wires of each section, or
         none where there is one
     """
@@ -62,6 +64,7 @@ class History:
     tension_times: Floats | None = None
     notes: tuple[str, ...] = ()
     section_force: Floats | None = None
+    contact_lateral: Sequence[Floats] = ()
 
     def until(self, steps: int) -> History | None:
         """The history of the first steps, or None where those are too few to be of use."""
@@ -86,6 +89,7 @@ class History:
             energy=self.energy[:energies],
             energy_times=self.energy_times[:energies],
             driven_work=self.driven_work[:n],
+            contact_lateral=[lateral[:, :n] for lateral in self.contact_lateral],
             section_force=None if self.section_force is None else self.section_force[..., :n],
             lost_work=None if self.lost_work is None else self.lost_work[:n],
             tension_change=None if self.tension_change is None else self.tension_change[:, :tensions],
@@ -108,6 +112,12 @@ def of_contacts(force: Floats, height: Floats, sections: Integers) -> tuple[Floa
     by_section = np.array([force[sections == s].sum(axis=0) for s in present])
     several = len(present) > 1
     return by_section.sum(axis=0), np.fmin.reduce(means), by_section if several else None
+
+
+def where_pressed(lateral: Floats, force: Floats) -> Floats:
+    """Places [m] of contacts, no number where their force [N] is 0; shape (contacts, times) all."""
+    found: Floats = np.where(force > 0, lateral, np.nan)
+    return found
 
 
 def section_forces(found: Sequence[tuple[Floats, Floats, Floats | None]]) -> Floats | None:

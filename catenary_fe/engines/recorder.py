@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.history import History, of_contacts, section_forces
+from catenary_fe.engines.history import History, of_contacts, section_forces, where_pressed
 from catenary_fe.fe.contact import BaseLine, Contact, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
 
@@ -118,18 +119,22 @@ def make_pantographs(
     return parameters, state
 
 
-def make_records(slots: int, sizes: Sizes, counts: tuple[int, int, int, int], every: int) -> Records:
+def make_records(
+    slots: int, sizes: Sizes, counts: tuple[int, int, int, int], every: int, *, spatial: bool = False
+) -> Records:
     """Room for histories.
 
     counts : numbers of droppers, of supports on all contact wires, of nodes of all wires, of gaps whose
         tension is followed
     every : steps between shapes of the wires, 0: none
+    spatial : whether the wires' places across the track are recorded at the contacts
     """
     p, j, m, t = sizes.pantographs, sizes.contacts, sizes.coordinates, sizes.steps + 1
     droppers, supports, nodes, gaps = counts
     return Records(
         force=np.zeros((slots, j, t)),
         height=np.zeros((slots, j, t)),
+        lateral=np.zeros((slots, j, t if spatial else 0)),
         masses=np.zeros((slots, p, m, t)),
         droppers=np.zeros((slots, droppers, t)),
         supports=np.zeros((slots, supports, t)),
@@ -238,4 +243,24 @@ def read_history(
         energy_times=nothing,
         driven_work=nothing,
         section_force=section_forces(found),
+        contact_lateral=[_lateral(records, slot, mine, start, step, n, system) for mine in of_each],
     )
+
+
+def _lateral(
+    records: Records, slot: int, mine: Any, start: InitialState, step: float, n: int, system: System
+) -> Floats:
+    """[m], shape (contacts, n), of a pantograph's contacts to the left; no number where there is none.
+
+    mine : shape (contacts of all,), whether they are the pantograph's
+    """
+    found = records.lateral[slot, mine, :n].copy()
+    if not found.size:
+        return found
+    own = [contact for contact, its in zip(start.contacts, mine, strict=False) if its]
+    for y, contact in zip(found, own, strict=True):
+        path = system.contact_paths[contact.wire]
+        here = path.rest_lateral(contact.position)
+        there = path.rest_lateral(contact.position + start.speed * step)
+        y[0] = here if n < 2 else y[1] + here - there  # the wire was not written down at the start itself
+    return where_pressed(found, records.force[slot, mine, :n])

@@ -16,6 +16,7 @@ from catenary_fe.fe.installation import (
     curve_pulls,
     dropper_damping,
     element_pulls,
+    element_shares,
     element_values,
     point_masses,
     wire_field,
@@ -24,7 +25,10 @@ from catenary_fe.fe.installation import (
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
+from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout.equipment import stations
+from catenary_fe.layout.terminations import midpoint_place
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -55,7 +59,10 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
     force = -GRAVITY * (wire_mass @ ups.ravel() + np.repeat(hanging, width) * ups.ravel())
     if axes == 3:
         pulls = np.concatenate(curve_pulls(catenary, mesh))[:, None, None]
-        force += scattered([(index, blocks * pulls)], size) @ np.roll(ups, -1, axis=1).ravel()
+        lefts = np.roll(ups, -1, axis=1)
+        force += scattered([(index, blocks * pulls)], size) @ lefts.ravel()
+        at_nodes = cant_forces(catenary, mesh) + leaning_weights(catenary, mesh, hanging)
+        force += (at_nodes[:, None] * lefts).ravel()
     held = _Restraints(catenary, mesh, installation, size)
     return System(
         axes=axes,
@@ -92,6 +99,7 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
         clamps += [wire.supports, np.array([0, wire.x.size - 1])]
         if n == mesh.contact_wires:
             clamps.append(mesh.stitch_ends.ravel())
+        clamps.append(np.searchsorted(wire.x, np.array(stations(catenary, mesh.wire_name(n))) - 1e-6))
         fixed = np.unique(np.concatenate(clamps))
         contact = n < mesh.contact_wires
         found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))
@@ -152,7 +160,7 @@ class _Restraints:
         catenary, mesh = self.catenary, self.mesh
         for number, kind in enumerate(wire_kinds(catenary, mesh)[: mesh.first_stitch]):
             wire, name = mesh.wires[number], wire_field(mesh, number)
-            pulls = kind.tension * catenary.tension_shares(name)
+            pulls = kind.tension * element_shares(catenary, mesh, number)
             for node, end, pull in (
                 (0, catenary.begin.of(name), -pulls[0]),
                 (wire.x.size - 1, catenary.end.of(name), pulls[-1]),
@@ -162,10 +170,11 @@ class _Restraints:
                     self.fixed[at] = True
                 else:
                     self._spring(at, end.stiffness or 0.0, 0.0, float(pull))
-            inner = [self.at(number, int(node), 0) for node in wire.supports[1:-1]]
+            inner = [self.at(number, node, 0) for node in range(1, wire.x.size - 1)]
             self.force[inner] -= np.diff(pulls)
-            if catenary.midpoint:
-                self.fixed[self.at(number, int(wire.supports[catenary.midpoint - 1]), 0)] = True
+            anchor = midpoint_place(catenary, name)
+            if anchor is not None:
+                self.fixed[self.at(number, int(np.abs(wire.x - anchor).argmin()), 0)] = True
 
     def _stitch_wires(self) -> None:
         mesh = self.mesh
@@ -205,6 +214,8 @@ class _Restraints:
 
     def _supports(self) -> None:
         last, up, wire = len(self.catenary.supports) - 1, self.axes - 1, self.mesh.contact_wires
+        if self.mesh.messenger is None:
+            return
         for i, support in enumerate(self.catenary.supports):
             node = int(self.mesh.messenger.supports[i])
             springs = {up: (support.messenger_stiffness, support.messenger_damping)}

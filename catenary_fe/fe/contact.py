@@ -28,6 +28,7 @@ class ContactPath:
     dof : shape (nodes, 2), likewise among the free ones, or FIXED
     supports : numbers of the nodes at the supports
     section : number of its tension section, from 0
+    across, across_dof : as ``index`` and ``dof``, of place and slope to the left; in the plane no rows
     """
 
     x: Floats
@@ -38,6 +39,8 @@ class ContactPath:
     dof: Integers
     supports: Integers
     section: int = 0
+    across: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    across_dof: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
 
     def meets(self, position: float) -> bool:
         """Whether a place [m] along the track lies between its ends."""
@@ -47,6 +50,13 @@ class ContactPath:
         """Number of the element at a place [m] along the track, and weights of its two heights and slopes."""
         e, share = self.locate(position)
         return e, hermite(share, self.lengths[e])
+
+    def rest_lateral(self, position: float) -> float:
+        """[m] to the left where it was installed, at a place [m] on the track; no number beyond its ends."""
+        if not self.meets(position):
+            return float(np.nan)
+        e, weights = self.at(position)
+        return float(weights @ self.lateral[e : e + 2].ravel())
 
     def locate(self, position: float) -> tuple[int, float]:
         """Number of the element at a place [m] along the track, and the share of its length before it."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from catenary_fe.fe.equipment import add_to_elements, lumped, wear_elements
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary, Wire
+from catenary_fe.layout.terminations import WireField, tension_shares
+from catenary_fe.layout.track import curvatures, lean
 
 Floats = NDArray[np.float64]
 
@@ -114,7 +116,9 @@ def dropper_damping(catenary: Catenary) -> Floats:
 
 def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
     """Each wire's parameters, in the order of the mesh."""
-    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires + [catenary.messenger_wire]
+    lines: list[Wire] = [catenary.contact_wire] * mesh.contact_wires
+    if catenary.messenger_wire:
+        lines.append(catenary.messenger_wire)
     if catenary.stitch_wire:
         lines += [catenary.stitch_wire] * len(mesh.stitch_ends)
     return lines
@@ -123,53 +127,60 @@ def wire_kinds(catenary: Catenary, mesh: Mesh) -> list[Wire]:
 def element_values(catenary: Catenary, mesh: Mesh, name: str) -> Floats:
     """Shape (elements of all wires,): a parameter of each element's wire, by its name."""
     counts = [wire.x.size - 1 for wire in mesh.wires]
-    return np.repeat([float(getattr(kind, name)) for kind in wire_kinds(catenary, mesh)], counts)
+    values = [
+        np.full(n, float(getattr(kind, name)))
+        for n, kind in zip(counts, wire_kinds(catenary, mesh), strict=True)
+    ]
+    wear_elements(catenary, mesh, name, values)
+    add_to_elements(catenary, mesh, name, values)
+    return np.concatenate(values)
 
 
 def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N], for each wire shape (elements,): nominal pull along the track.
+    """[N], for each wire shape (elements,): pull along the track as installed.
 
     Between a stitch wire's clamps the two wires share the messenger wire's tension.
     """
     pulls = [
-        np.full(wire.x.size - 1, kind.tension)
-        for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
+        kind.tension * element_shares(catenary, mesh, number)
+        for number, kind in enumerate(wire_kinds(catenary, mesh))
     ]
-    for pull, wire, shares in zip(pulls, mesh.wires, _tension_shares(catenary, mesh), strict=False):
-        pull *= np.repeat(shares, np.diff(wire.supports))
     for a, b in mesh.stitch_ends:
         assert catenary.stitch_wire is not None
         pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
     return pulls
 
 
-def _tension_shares(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """Shape (spans,), for each contact and messenger wire, see :meth:`Catenary.tension_shares`."""
-    contact = catenary.tension_shares("contact_wire")
-    return [contact] * mesh.contact_wires + [catenary.tension_shares("messenger_wire")]
+def element_shares(catenary: Catenary, mesh: Mesh, number: int) -> Floats:
+    """Shape (elements,): what friction leaves of a wire's nominal tension; the wire by its number."""
+    x = mesh.wires[number].x
+    if number >= mesh.first_stitch:
+        return np.ones(x.size - 1)
+    return tension_shares(catenary, wire_field(mesh, number), (x[:-1] + x[1:]) / 2)
 
 
 def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ).
+    """[N/kg], for each wire shape (elements,): pull to the left by the element's mass, T/(R ρ) + g sin φ.
 
     Seen from a track that curves with the radius R, a straight wire under the tension T bends as if a force
-    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %.
+    T/R a metre pulled it towards the centre; what this leaves out is of the order of y/R, 0.1 %. Seen from
+    one that leans by φ, a part of its weight pulls it to the lower rail.
     """
-    curvature = np.array([span.curvature for span in catenary.spans])
+    pulls = element_pulls(catenary, mesh)
+    counts = np.cumsum([p.size for p in pulls])[:-1]
+    masses = np.split(element_values(catenary, mesh, "mass_per_length"), counts)
     found = []
-    for wire, kind, pulls in zip(
-        mesh.wires, wire_kinds(catenary, mesh), element_pulls(catenary, mesh), strict=True
-    ):
+    for wire, pull, mass in zip(mesh.wires, pulls, masses, strict=True):
         middle = (wire.x[:-1] + wire.x[1:]) / 2
-        span = np.searchsorted(catenary.support_positions, middle) - 1
-        found.append(pulls * curvature[span] / kind.mass_per_length)
+        weight = GRAVITY * np.sin(lean(catenary, middle))
+        found.append(pull * curvatures(catenary, middle) / mass + weight)
     return found
 
 
 def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Floats, Floats]:
     """[kg], shape (nodes of all wires,) each: masses that move with the nodes, and that weigh on them.
 
-    Of clamps, droppers and arms.
+    Of clamps, droppers, equipment and arms.
     """
     masses = np.zeros(mesh.first_nodes[-1])
     half = np.array([d.mass_per_length for d in catenary.droppers]) * lengths / 2
@@ -180,6 +191,7 @@ def point_masses(catenary: Catenary, mesh: Mesh, lengths: Floats) -> tuple[Float
     if catenary.stitch_wire:
         ends = mesh.first_nodes[mesh.contact_wires] + mesh.stitch_ends
         masses[ends.ravel()] += catenary.stitch_wire.clamp_mass
+    np.add.at(masses, *lumped(catenary, mesh))
     hanging = masses.copy()
     for node, mass in _weights(catenary, mesh):
         masses[node] += mass
@@ -205,6 +217,6 @@ def _weights(catenary: Catenary, mesh: Mesh) -> list[tuple[int, float]]:
     return found
 
 
-def wire_field(mesh: Mesh, number: int) -> Literal["contact_wire", "messenger_wire"]:
+def wire_field(mesh: Mesh, number: int) -> WireField:
     """What a wire, no stitch wire, is called in a layout."""
     return "contact_wire" if number < mesh.contact_wires else "messenger_wire"

@@ -148,7 +148,10 @@ def linear_model(system: System) -> LinearModel:
         dropper_stiffness=droppers.stiffness,
         dropper_damping=droppers.damping,
         dropper_tension=np.where(pull > 0, pull, np.minimum(push, 0.0)),
-        contacts=tuple(replace(path, dof=place[path.index]) for path in system.contact_paths),
+        contacts=tuple(
+            replace(path, dof=place[path.index], across_dof=place[path.across])
+            for path in system.contact_paths
+        ),
         heights=place[system.heights],
         tensions=place[whole:],
         gaps=_gaps(wires),

@@ -4,10 +4,13 @@ from catenary_fe.layout import library
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
-from catenary_fe.layout.line import Line, Overlap, ends_in_words, join_sections, read_catenary
+from catenary_fe.layout.installed import Wear
+from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -31,6 +34,7 @@ from catenary_fe.layout.parts import (
     Wire,
 )
 from catenary_fe.layout.rules import layout_warnings
+from catenary_fe.layout.terminations import ends_in_words
 from catenary_fe.layout.writer import layout_text
 
 __all__ = [
@@ -43,8 +47,10 @@ __all__ = [
     "DescribedPantograph",
     "Dropper",
     "ElasticPantograph",
+    "Equipment",
     "InputError",
     "Line",
+    "MeasuredWire",
     "Overlap",
     "Panhead",
     "Pantograph",
@@ -59,6 +65,7 @@ __all__ = [
     "StitchWire",
     "Support",
     "Termination",
+    "Wear",
     "Wire",
     "build_line",
     "catenary_from_tables",
@@ -74,6 +81,7 @@ __all__ = [
     "load_pantograph",
     "pantograph_schema",
     "read_catenary",
+    "read_measured",
     "recorded_pantograph",
     "target_mean_force",
 ]

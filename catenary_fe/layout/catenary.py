@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property, wraps
 from math import tan
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.installed import Wear, changes_of, designed_spans
 from catenary_fe.layout.parameters import (
     GRAVITY,
     NonEmpty,
     NonNegative,
+    Number,
     Parameters,
     Positive,
     Text,
@@ -24,8 +27,8 @@ from catenary_fe.layout.parameters import (
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
-
-Loss = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, lt=0.1)]
+from catenary_fe.layout.terminations import Loss, lateral_pulls
+from catenary_fe.layout.track import messenger_staggers
 
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
@@ -71,8 +74,9 @@ class Catenary(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: Wire
     """the wire that the pantograph touches"""
-    messenger_wire: Wire
-    """the wire that carries the droppers"""
+    messenger_wire: Wire | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWire | None = None
@@ -91,8 +95,16 @@ class Catenary(Parameters):
     """what holds the wires along the track at the last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    midpoint_position: Number | None = None
+    """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    wear: tuple[Wear, ...] = ()
+    """of the contact wire, since its droppers were cut"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[int, ...] | None = None
@@ -119,7 +131,7 @@ class Catenary(Parameters):
         span_length: float,
         droppers: Sequence[Dropper],
         contact_wire: Wire,
-        messenger_wire: Wire,
+        messenger_wire: Wire | None = None,
         support: Support,
         pre_sag: float = 0.0,
         stagger: float = 0.0,
@@ -167,40 +179,73 @@ class Catenary(Parameters):
         """[m] from the first to the last support."""
         return float(self.support_positions[-1])
 
+    @_fixed_array
+    def hanging(self) -> NDArray[np.bool_]:
+        """Shape (designed droppers,): which droppers hang; others are missing or broken."""
+        return np.array([d.state is None for span in self.spans for d in span.droppers], dtype=bool)
+
     @cached_property
     def droppers(self) -> tuple[Dropper, ...]:
-        """All droppers of the line in order."""
-        return tuple(dropper for span in self.spans for dropper in span.droppers)
+        """All droppers of the line that hang, in order."""
+        return tuple(dropper for span in self.spans for dropper in span.droppers if dropper.state is None)
 
     @_fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
-        """[m], shape (droppers,), along the line."""
-        starts = self.support_positions
-        return np.array([starts[i] + d.position for i, s in enumerate(self.spans) for d in s.droppers])
+        """[m], shape (droppers,), along the line; where a clamp has slid, of the upper end."""
+        x = [
+            d.position + a
+            for a, s in zip(self.support_positions, self.spans, strict=False)
+            for d in s.droppers
+        ]
+        positions: NDArray[np.float64] = np.array(x)[self.hanging]
+        return positions
+
+    @_fixed_array
+    def lower_clamp_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line, of their clamps on the contact wire."""
+        lower: NDArray[np.float64] = self.dropper_positions + [d.clamp_shift for d in self.droppers]
+        return lower
 
     @_fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
-        return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
+        spans = [i for i, s in enumerate(self.spans, start=1) for _ in s.droppers]
+        hanging: NDArray[np.int64] = np.array(spans, dtype=np.int64)[self.hanging]
+        return hanging
+
+    @_fixed_array
+    def dropper_numbers(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of each dropper in its span, from 1, as designed: missing ones count."""
+        numbers = [n for span in self.spans for n in range(1, len(span.droppers) + 1)]
+        hanging: NDArray[np.int64] = np.array(numbers, dtype=np.int64)[self.hanging]
+        return hanging
+
+    @property
+    def departs_from_design(self) -> bool:
+        """Whether droppers are gone, clamps have slid or the contact wire has worn since its droppers were cut."""
+        return bool(changes_of(self))
+
+    def as_designed(self) -> Self:
+        """The same line with all droppers and clamps in place and a new contact wire."""
+        return self.replace(spans=designed_spans(self), wear=()) if self.departs_from_design else self
 
     @property
     def gives_dropper_lengths(self) -> bool:
         """Whether all its droppers have lengths, with which it is hung instead of those of its design."""
-        return bool(self.droppers) and all(d.length is not None for d in self.droppers)
+        return bool(self.hanging.size) and all(d.length is not None for s in self.spans for d in s.droppers)
 
     def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
         """The same line with these dropper lengths, which it is then hung with.
 
-        lengths : [m], shape (droppers,), stress-free
+        lengths : [m], shape (designed droppers,), stress-free; missing and broken droppers count
 
         Raises InputError where their number is another one than the droppers', or one is not a length.
         """
-        values = numbers("lengths", lengths, shape=(len(self.droppers),)).tolist()
-        return self._with_lengths(values)
+        return self._with_lengths(numbers("lengths", lengths, shape=(self.hanging.size,)).tolist())
 
     def without_dropper_lengths(self) -> Self:
         """The same line without dropper lengths of its own: form finding gives it those of the design."""
-        return self._with_lengths([None] * len(self.droppers))
+        return self._with_lengths([None] * self.hanging.size)
 
     def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
         left = iter(lengths)
@@ -238,22 +283,27 @@ class Catenary(Parameters):
     def design_heights(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
         offsets = np.concatenate([s.height_offsets() for s in self.spans])
-        heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets
+        heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets[self.hanging]
         return heights
 
     @_fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
-        """[m], shape (spans + 1,): height of the installed messenger wire at the supports."""
+        """[m], shape (spans + 1,): height of the installed messenger wire at the supports.
+
+        Without one, of the contact wire.
+        """
         heights = [s.system_height or self.system_height for s in self.supports]
+        if self.messenger_wire is None:
+            return self.contact_wire_heights
         above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
         return above
 
     @property
     def leaves_the_plane(self) -> bool:
         """Whether stagger, curves or links lie outside the vertical plane."""
-        return any(span.curve_radius for span in self.spans) or any(
-            s.stagger or s.messenger_stagger or (s.steady_arm and s.steady_arm.length is not None)
-            for s in self.supports
+        return any(any(span.curvatures) for span in self.spans) or any(
+            s.stagger or y or s.cant or (s.steady_arm and s.steady_arm.length is not None)
+            for s, y in zip(self.supports, self.messenger_staggers.tolist(), strict=True)
         )
 
     @property
@@ -270,11 +320,13 @@ class Catenary(Parameters):
     @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
-        wires = len(self.contact_wire_offsets)
-        return np.array(
-            [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(self.droppers)],
-            dtype=np.int64,
-        )
+        held: NDArray[np.int64] = np.array(self._wires_held(), dtype=np.int64)[self.hanging]
+        return held
+
+    def _wires_held(self) -> list[int]:
+        """Number of the contact wire, from 0, of every dropper of the design."""
+        wires, designed = len(self.contact_wire_offsets), [d for span in self.spans for d in span.droppers]
+        return [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(designed)]
 
     def has_stitch_wire(self, support: int) -> bool:
         """Whether one hangs at the support of this number, from 0. Raises InputError for an absent one."""
@@ -300,35 +352,20 @@ class Catenary(Parameters):
         return np.array([support.stagger for support in self.supports])
 
     @_fixed_array
+    def messenger_staggers(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): likewise of the messenger wire; of one that follows, where that is."""
+        return messenger_staggers(self)
+
+    @_fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
-        """[N], shape (spans + 1,): force to the left with which the stagger and curves pull on the supports.
+        """[N], shape (spans + 1,): force to the left with which stagger, curves, cant pull on the supports.
 
         Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
         """
-        lengths = np.array([span.length for span in self.spans])
-        direction = np.diff(self.staggers) / lengths
-        bend = lengths * np.array([span.curvature for span in self.spans]) / 2
-        pulls = np.zeros(len(self.supports))
-        pulls[1:-1] = np.diff(direction) + bend[:-1] + bend[1:]
-        return self.contact_wire.tension * len(self.contact_wire_offsets) * pulls
-
-    def tension_shares(self, wire: Literal["contact_wire", "messenger_wire"]) -> NDArray[np.float64]:
-        """Shape (spans,): share of its nominal tension that a wire has in each span.
-
-        Friction takes some in a device at an end, and at each support from there to where the wire is held:
-        T_i = T η (1 − loss)^i behind i supports.
-        """
-        n, keeps = len(self.spans), 1 - self.tension_loss
-        ends = self.begin.of(wire), self.end.of(wire)
-        tensioned = [end.kind != "fixed" for end in ends]
-        held = self.midpoint - 1 if self.midpoint else 0 if tensioned[1] else n
-        span = np.arange(n)
-        before, behind = ends[0].efficiency * keeps**span, ends[1].efficiency * keeps ** (n - 1 - span)
-        shares: NDArray[np.float64] = np.where(span < held, before, behind)
-        return shares if any(tensioned) else np.ones(n)
+        return lateral_pulls(self)
 
     def planar(self) -> Self:
-        """The same line in the vertical plane: no stagger, no curves, links as springs.
+        """The same line in the vertical plane: no stagger, curves and cant, links as springs.
 
         A link under the lateral force H acts in the plane like a vertical spring of H over its length.
 
@@ -340,13 +377,14 @@ class Catenary(Parameters):
             s.replace(
                 stagger=0.0,
                 messenger_stagger=0.0,
+                cant=0.0,
                 messenger_lateral_stiffness=None,
                 messenger_lateral_damping=0.0,
                 steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
             )
             for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
         )
-        spans = tuple(span.replace(curve_radius=None) for span in self.spans)
+        spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in self.spans)
         return self.replace(spans=spans, supports=supports, spatial=False)
 
     @property
@@ -361,27 +399,40 @@ class Catenary(Parameters):
 
     def mirrored(self) -> Self:
         """The mirror image: x runs the other way, left stays left."""
-        wires = iter(self.dropper_contact_wires.tolist())
+        wires = iter(self._wires_held())
         spans = []
         for span in self.spans:
             images = [
                 d.replace(
                     position=span.length - d.position,
+                    clamp_shift=-d.clamp_shift,
                     contact_wire=next(wires) + 1 if self.contact_wire_spacing else None,
                 )
                 for d in span.droppers
             ]
-            spans.append(span.replace(droppers=tuple(reversed(images))))
+            spans.append(_turned(span).replace(droppers=tuple(reversed(images))))
         n = len(self.spans)
         evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
         return self.replace(
             spans=tuple(reversed(spans)),
             supports=self.supports[::-1],
-            evaluated_spans=evaluated,
             begin=self.end,
             end=self.begin,
             midpoint=self.midpoint and n + 2 - self.midpoint,
+            midpoint_position=None
+            if self.midpoint_position is None
+            else self.length - self.midpoint_position,
+            equipment=tuple(item.mirrored(self) for item in self.equipment),
+            wear=tuple(wear.mirrored(self) for wear in self.wear),
+            evaluated_spans=evaluated,
         )
+
+
+def _turned(span: Span) -> Span:
+    """The span with its track seen from its other end."""
+    if span.curve_radius_end is None:
+        return span
+    return span.replace(curve_radius=span.curve_radius_end, curve_radius_end=span.curve_radius or 0.0)
 
 
 def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:

@@ -11,8 +11,10 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.catenary import Catenary, Loss, RayleighDamping
+from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
@@ -26,6 +28,7 @@ from catenary_fe.layout.parameters import (
     shorten,
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.terminations import Loss
 from catenary_fe.layout.toml import read_toml
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
@@ -171,6 +174,12 @@ class SectionEntry(Parameters):
     """what holds the wires along the track at the section's last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from the section's first one, that holds the wires along the track"""
+    midpoint_position: Number | None = None
+    """[m] from the section's first support to a midpoint anchor within a span, instead"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the section's spans; that of other sections is not repeated"""
+    wear: tuple[Wear, ...] = ()
+    """of the section's contact wire; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -178,7 +187,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = self.model_fields_set - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment", "wear"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -198,8 +207,9 @@ class LayoutFile(Parameters):
     """where the numbers come from, and how sure they are"""
     contact_wire: WireEntry
     """the wire that the pantograph touches"""
-    messenger_wire: WireEntry
-    """the wire that carries the droppers"""
+    messenger_wire: WireEntry | None = None
+    """the wire that carries the droppers; unset, on a line without droppers: none, the contact wire hangs at
+    the supports alone"""
     contact_wire_spacing: Positive | None = None
     """[m] sideways between two equal contact wires; unset: one contact wire"""
     stitch_wire: StitchWireEntry | None = None
@@ -227,8 +237,16 @@ class LayoutFile(Parameters):
     """what holds the wires along the track at the last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    midpoint_position: Number | None = None
+    """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    equipment: tuple[Equipment, ...] = ()
+    """within the spans: section insulators, neutral sections, clamps"""
+    wear: tuple[Wear, ...] = ()
+    """of the contact wire, since its droppers were cut"""
+    cant_base: Positive = 1.5
+    """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
     """of wires and taut droppers"""
     evaluated_spans: tuple[Annotated[int, Field(strict=True)], ...] | None = None
@@ -273,7 +291,7 @@ class LayoutFile(Parameters):
         try:
             catenary = Catenary(
                 contact_wire=self.contact_wire.wire(),
-                messenger_wire=self.messenger_wire.wire(),
+                messenger_wire=self.messenger_wire and self.messenger_wire.wire(),
                 stitch_wire=self.stitch_wire and self.stitch_wire.wire(),
                 spans=spans,
                 supports=supports,
@@ -331,6 +349,7 @@ class LayoutFile(Parameters):
             droppers=droppers,
             pre_sag=entry.pre_sag,
             curve_radius=entry.curve_radius if own_radius else self.curve_radius,
+            curve_radius_end=entry.curve_radius_end,
         )
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_serializer, model_validator
 
-from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.catenary import Catenary
+from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import GRAVITY, NonNegative, Parameters, Positive, refuse
 from catenary_fe.layout.parts import Span, Support
@@ -97,6 +97,8 @@ class Line(Catenary):
         spans, supports = _served(sections, overlaps)
         first = min(sections, key=lambda section: section.contact_wire.wave_speed)
         common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
+        common["equipment"] = _equipment(sections, overlaps)
+        common["wear"] = ()  # of the sections
         own = {name: data[name] for name in _OWN if name in data}
         return (
             common
@@ -148,6 +150,31 @@ class Line(Catenary):
         return tuple(dropper for section in self.sections for dropper in section.droppers)
 
     @cached_property
+    def hanging(self) -> NDArray[np.bool_]:
+        """Shape (designed droppers,): which droppers hang, section by section."""
+        return self._of_droppers("hanging")
+
+    @cached_property
+    def dropper_numbers(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of each dropper in its section's span, from 1."""
+        return self._of_droppers("dropper_numbers")
+
+    @cached_property
+    def lower_clamp_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line, of their clamps on the contact wires."""
+        parts = zip(self.sections, self.begins, strict=True)
+        return np.concatenate([section.lower_clamp_positions + begin for section, begin in parts])
+
+    @property
+    def departs_from_design(self) -> bool:
+        """Whether any section departs from what its droppers were cut for."""
+        return any(section.departs_from_design for section in self.sections)
+
+    def as_designed(self) -> Self:
+        """The same line as designed, section by section."""
+        return self.replace(sections=tuple(section.as_designed() for section in self.sections))
+
+    @cached_property
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line."""
         parts = zip(self.sections, self.begins, strict=True)
@@ -177,14 +204,16 @@ class Line(Catenary):
         """Whether stagger, curves or links lie outside the vertical plane."""
         return any(section.is_spatial for section in self.sections)
 
+    @property
+    def gives_dropper_lengths(self) -> bool:
+        """Whether all droppers of all sections have lengths, with which they are hung."""
+        hung = [section for section in self.sections if section.hanging.size]
+        return bool(hung) and all(section.gives_dropper_lengths for section in hung)
+
     def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
         left = iter(lengths)
-        sections = [s._with_lengths([next(left) for _ in s.droppers]) for s in self.sections]
+        sections = [s._with_lengths([next(left) for _ in range(s.hanging.size)]) for s in self.sections]
         return self.replace(sections=tuple(sections))
-
-    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
-        """The same line with these stress-free dropper lengths [m], shape (droppers,), section by section."""
-        return self._with_lengths(numbers("lengths", lengths, shape=(len(self.droppers),)).tolist())
 
     def planar(self) -> Self:
         """The same line in the vertical plane, section by section."""
@@ -302,11 +331,14 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
     for name, rule in (
         ("contact_wire_height", "the nominal height, from which pantographs count"),
         ("damping", "one for the line"),
+        ("cant_base", "one for the line"),
         ("is_spatial", "in space or in the vertical plane, all alike"),
     ):
         values = [getattr(section, name) for section in sections]
         if any(value != values[0] for value in values):
             found.append(f"sections: {name} differs between them; it must be {rule}")
+    if len({section.messenger_wire is None for section in sections}) > 1:
+        found.append("sections: some have a messenger_wire and others none; give all one, or none of them")
     for n, (overlap, (a, b)) in enumerate(zip(overlaps, pairwise(sections), strict=True), start=1):
         shared = overlap.spans
         if shared >= min(len(a.spans), len(b.spans)):
@@ -322,9 +354,21 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
                     f"{where} is {one.length:g} m in the section before and {other.length:g} m in the one"
                     " behind; they stand on the same masts: make them equal"
                 )
-            if one.curvature != other.curvature:
+            if one.curvatures != other.curvatures:
                 found.append(f"{where}: curve_radius differs between the two sections; the track is the same")
+        if [s.cant for s in a.supports[-1 - shared :]] != [s.cant for s in b.supports[: shared + 1]]:
+            found.append(f"overlap {n}: cant differs between the two sections; the track is the same")
     return found
+
+
+def _equipment(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> tuple[Equipment, ...]:
+    """That of all sections, by its place along the line."""
+    found, begin = [], 0.0
+    for section, overlap in zip(sections, [*overlaps, None], strict=True):
+        for item in section.equipment:
+            found.append(item.replace(x=begin + item.middle(section), span=None, position=None))
+        begin += float(section.support_positions[-1 - overlap.spans]) if overlap else 0.0
+    return tuple(found)
 
 
 def _served(
@@ -356,12 +400,3 @@ def _served_before(section: Catenary, following: Catenary, shared: int) -> int:
 def read_catenary(record: dict[str, Any]) -> Catenary:
     """A catenary, or a line of several sections, as :meth:`model_dump` wrote it."""
     return (Line if "sections" in record else Catenary).model_validate(record)
-
-
-def ends_in_words(catenary: Catenary) -> str:
-    """What holds the wires along the track, section by section."""
-    said = []
-    for section in catenary.sections if isinstance(catenary, Line) else (catenary,):
-        middle = f", held at support {section.midpoint}" if section.midpoint else ""
-        said.append(f"begin {section.begin.of_both}{middle}, end {section.end.of_both}")
-    return "; ".join(dict.fromkeys(said))

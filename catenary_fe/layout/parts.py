@@ -19,6 +19,7 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
+from catenary_fe.layout.track import Cant, MessengerStagger
 from catenary_fe.theory import Beam
 
 
@@ -28,7 +29,7 @@ class Wire(Parameters):
     mass_per_length: Positive
     """[kg/m] of the wire as installed"""
     tension: Positive
-    """[N] along the wire, held by tensioning weights"""
+    """[N] along the wire as installed, which the devices at its ends are set for"""
     axial_stiffness: Positive
     """[N] EA, cross-section times Young's modulus"""
     bending_stiffness: NonNegative = 0.0
@@ -104,6 +105,16 @@ class SectionEnd(Termination):
     messenger_wire: Termination | None = None
     """what holds the messenger wire here; unset: as all wires"""
 
+    @model_validator(mode="after")
+    def _some_wire_ends_on_it(self) -> Self:
+        if self.contact_wire and self.messenger_wire:
+            for name in ("stiffness", "ratio", "efficiency"):
+                if getattr(self, name) != type(self).model_fields[name].default:
+                    raise ValueError(
+                        f"{name} has no effect where contact_wire and messenger_wire have ends of their own"
+                    )
+        return self
+
     def of(self, wire: Literal["contact_wire", "messenger_wire"]) -> Termination:
         """What holds this kind of wire."""
         own: Termination | None = getattr(self, wire)
@@ -137,6 +148,11 @@ class Dropper(Parameters):
     """[m] design height of the contact wire here above the nominal one; unset: the span's pre-sag decides"""
     contact_wire: Literal[1, 2] | None = None
     """which of two contact wires hangs here, the right (1) or the left (2) one; unset: in turns"""
+    state: Literal["missing", "broken"] | None = None
+    """"missing": gone since with both clamps; "broken": gone, its clamps stay on the wires. The other droppers
+    keep the lengths that they were cut to with this one in place"""
+    clamp_shift: Number = 0.0
+    """[m] along the track by which its lower clamp has slid since, positive in x; its length stays"""
 
 
 class StitchWire(Wire):
@@ -166,20 +182,33 @@ class Span(Parameters):
     """[m] design sag of the contact wire at mid-span, a parabola between the outermost droppers"""
     curve_radius: Number | None = None
     """[m] of the track, positive in a curve to the left (centre at +y); unset or 0: straight"""
+    curve_radius_end: Number | None = None
+    """[m] at the span's end, of a transition curve: from `curve_radius` at its beginning the curvature
+    changes linearly; 0: straight there; unset: as at the beginning"""
 
     @model_validator(mode="after")
     def _curve_is_a_track(self) -> Self:
-        if self.curve_radius and abs(self.curve_radius) < SHARPEST_CURVE:
-            raise ValueError(
-                f"curve_radius = {self.curve_radius:g} m: no track with a catenary curves more sharply than"
-                f" {SHARPEST_CURVE:g} m; leave it out where the track is straight"
-            )
+        for name in ("curve_radius", "curve_radius_end"):
+            radius = getattr(self, name)
+            if radius and abs(radius) < SHARPEST_CURVE:
+                raise ValueError(
+                    f"{name} = {radius:g} m: no track with a catenary curves more sharply than"
+                    f" {SHARPEST_CURVE:g} m; leave it out where the track is straight"
+                )
         return self
 
     @property
-    def curvature(self) -> float:
-        """[1/m] of the track, positive to the left."""
-        return 1 / self.curve_radius if self.curve_radius else 0.0
+    def curvatures(self) -> tuple[float, float]:
+        """[1/m] of the track at the span's beginning and end, positive to the left; linear between."""
+        begin = 1 / self.curve_radius if self.curve_radius else 0.0
+        if self.curve_radius_end is None:
+            return begin, begin
+        return begin, 1 / self.curve_radius_end if self.curve_radius_end else 0.0
+
+    def radius_at(self, end: bool) -> float | None:
+        """[m] of the track at the span's beginning or end, positive to the left; None: straight there."""
+        curvature = self.curvatures[end]
+        return 1 / curvature if curvature else None
 
     @field_validator("droppers")
     @classmethod
@@ -323,8 +352,12 @@ class Support(Parameters):
     """[m] between the wires at this support; unset: the catenary's"""
     stagger: Lateral = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Lateral = 0.0
-    """[m] of the messenger wire to the left of the track's centre (+y)"""
+    messenger_stagger: MessengerStagger = 0.0
+    """[m] of the messenger wire to the left of the track's centre (+y); "follows": plumb above the contact
+    wire; "in curves": so where the track curves on either side, else above the track's centre"""
+    cant: Cant = 0.0
+    """[m] by which the right rail lies higher than the left one: the track leans to the left, as in a curve
+    to the left; linear between supports"""
     stitch_wire: bool = True
     """whether a stitch wire, if the catenary has them, hangs here; none does at a line's ends"""
     stitch_wire_length: Positive | None = None

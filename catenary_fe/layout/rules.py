@@ -7,9 +7,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.equipment import equipment_faults
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.installed import change_faults
 from catenary_fe.layout.pantograph import AnyPantograph
 from catenary_fe.layout.parameters import Parameters
+from catenary_fe.layout.terminations import termination_faults
 
 if TYPE_CHECKING:
     from catenary_fe.layout.catenary import Catenary
@@ -17,7 +20,15 @@ if TYPE_CHECKING:
 
 def catenary_faults(catenary: Catenary) -> list[str]:
     """One line for each fault of a catenary whose parts are sound by themselves."""
-    return [*line_faults(catenary), *_faults_of_droppers(catenary), *_faults_of_stitch_wires(catenary)]
+    return [
+        *line_faults(catenary),
+        *_faults_of_droppers(catenary),
+        *_faults_of_stitch_wires(catenary),
+        *termination_faults(catenary),
+        *equipment_faults(catenary),
+        *change_faults(catenary),
+        *_faults_without_messenger(catenary),
+    ]
 
 
 def line_faults(catenary: Catenary) -> list[str]:
@@ -37,33 +48,9 @@ def _faults_of_line(catenary: Catenary) -> Iterator[str]:
             "spatial = false, but stagger, curves or steady arms with a length leave the vertical plane;"
             " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
         )
-    yield from _faults_of_ends(catenary)
     for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
         if support.stagger and support.steady_arm is None:
             yield f"support {i}: stagger = {support.stagger:g} m without a steady_arm: nothing holds the wire"
-
-
-def _faults_of_ends(catenary: Catenary) -> Iterator[str]:
-    count, midpoint = len(catenary.supports), catenary.midpoint
-    if midpoint is not None and not 1 < midpoint < count:
-        yield f"midpoint = {midpoint}: must be a support inside the section, 2 to {count - 1}"
-    both = []
-    for wire in ("contact_wire", "messenger_wire"):
-        kinds = [end.of(wire).kind for end in (catenary.begin, catenary.end)]
-        both.append("fixed" not in kinds)
-        if kinds == ["weights", "weights"] and midpoint is None:
-            yield (
-                f"{wire}: weights at both ends and no midpoint: nothing holds it along the track; name the"
-                " support that does in midpoint, or fix an end"
-            )
-    if midpoint is not None and not any(both):
-        yield "midpoint has no effect where an end of each wire is fixed; leave it out, or tension both ends"
-    if catenary.tension_loss and all(
-        end.of(wire).kind == "fixed"
-        for end in (catenary.begin, catenary.end)
-        for wire in ("contact_wire", "messenger_wire")
-    ):
-        yield "tension_loss has no effect between fixed ends; leave it out"
 
 
 def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
@@ -71,8 +58,8 @@ def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
     for i, span in enumerate(catenary.spans):
         for number, dropper in enumerate(span.droppers, start=1):
             # a messenger wire sags: the most room is at the higher of its two supports
-            room = max(top[i], top[i + 1]) - next(design)
-            if dropper.length is not None and dropper.length >= room:
+            room = None if dropper.state else max(top[i], top[i + 1]) - next(design)
+            if room is not None and dropper.length is not None and dropper.length >= room:
                 yield (
                     f"span {i + 1}: dropper {number} with a length of {dropper.length:g} m is longer than"
                     f" the system height allows, {room:g} m here; shorten it or raise system_height"
@@ -82,6 +69,30 @@ def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
                     f"span {i + 1}: dropper {number}: contact_wire = {dropper.contact_wire}, but there is one"
                     " contact wire; give contact_wire_spacing for two, or leave it out"
                 )
+
+
+def _faults_without_messenger(catenary: Catenary) -> Iterator[str]:
+    """What needs a messenger wire, on a line without."""
+    if catenary.messenger_wire is not None:
+        return
+    hung = [i for i, span in enumerate(catenary.spans, start=1) if span.droppers]
+    if hung:
+        yield (
+            f"messenger_wire is missing, and span {hung[0]} has droppers; add it: the wire that carries them,"
+            " or leave out all droppers of a contact wire that hangs at the supports alone"
+        )
+        return
+    if catenary.stitch_wire is not None:
+        yield "stitch_wire without a messenger_wire has nothing to be clamped on; give both, or neither"
+    for n, item in enumerate(catenary.equipment, start=1):
+        if item.wire == "messenger wire":
+            yield f"equipment {n}: wire = 'messenger wire', but the line has none; put it on the contact wire"
+    for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
+        if support.steady_arm is None:
+            yield (
+                f"support {i}: neither a steady_arm nor droppers hold the contact wire; give a steady_arm, or"
+                " make one span of the two"
+            )
 
 
 def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
@@ -95,7 +106,7 @@ def _faults_of_stitch_wires(catenary: Catenary) -> Iterator[str]:
                 f"span {i + 1}: stitch wires of {lengths.max():g} m meet in a span of {span.length:g} m;"
                 " shorten stitch_wire.length"
             )
-    if wire.tension >= catenary.messenger_wire.tension:
+    if catenary.messenger_wire and wire.tension >= catenary.messenger_wire.tension:
         yield (
             f"stitch_wire.tension = {wire.tension:g} N leaves the messenger wire none of its"
             f" {catenary.messenger_wire.tension:g} N; lower it"
@@ -106,17 +117,15 @@ def dropper_names(catenary: Catenary) -> list[str]:
     """Shape (droppers,): each dropper's name in errors."""
     if sections := getattr(catenary, "sections", ()):
         return [f"section {n}: {name}" for n, s in enumerate(sections, start=1) for name in dropper_names(s)]
-    return [
-        f"span {i}: dropper {number} at {dropper.position:g} m"
-        for i, span in enumerate(catenary.spans, start=1)
-        for number, dropper in enumerate(span.droppers, start=1)
-    ]
+    places = zip(catenary.dropper_spans, catenary.dropper_numbers, catenary.droppers, strict=True)
+    return [f"span {i}: dropper {number} at {dropper.position:g} m" for i, number, dropper in places]
 
 
 def check_lengths(catenary: Catenary) -> None:
     """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
-    names = dropper_names(catenary)
-    missing = [name for name, d in zip(names, catenary.droppers, strict=True) if d.length is None]
+    designed = catenary.as_designed()
+    names = dropper_names(designed)
+    missing = [name for name, d in zip(names, designed.droppers, strict=True) if d.length is None]
     if len(missing) not in (0, len(names)):
         raise InputError(
             f"{missing[0]} has no length: {len(missing)} of {len(names)} droppers have none, the others have"
@@ -132,6 +141,7 @@ _LINE: dict[str, Range] = {
     "contact_wire_height": (3.5, 8.0, "m"),
     "system_height": (0.1, 4.0, "m"),
     "contact_wire_spacing": (0.01, 0.2, "m"),
+    "cant_base": (0.6, 1.8, "m"),
 }
 _DAMPING: dict[str, Range] = {"alpha": (0.0, 5.0, "1/s"), "beta": (0.0, 0.03, "s")}
 _WIRE: dict[str, Range] = {
@@ -153,6 +163,7 @@ _DROPPER: dict[str, Range] = {
 _SUPPORT: dict[str, Range] = {
     "stagger": (0.0, 0.6, "m"),
     "messenger_stagger": (0.0, 1.5, "m"),
+    "cant": (0.0, 0.2, "m"),
     "messenger_stiffness": (1e4, 1e10, "N/m"),
     "messenger_lateral_stiffness": (1e3, 1e10, "N/m"),
     "system_height": (0.1, 4.0, "m"),
@@ -165,6 +176,11 @@ _ARM: dict[str, Range] = {
     "clamp_mass": (0.0, 5.0, "kg"),
     "uplift_room": (0.02, 0.6, "m"),
 }
+_EQUIPMENT: dict[str, Range] = {
+    "mass": (0.05, 80.0, "kg"),
+    "length": (0.02, 20.0, "m"),
+    "bending_stiffness": (1.0, 1e6, "N m²"),
+}
 
 
 @checked
@@ -175,7 +191,10 @@ def layout_warnings(catenary: Catenary) -> list[str]:
         for text in _unusual(owner, usual):
             found.setdefault((type(owner), text), f"{where}{text}")
     warnings = list(found.values())
-    for name, wire in (("contact_wire", catenary.contact_wire), ("messenger_wire", catenary.messenger_wire)):
+    for name in ("contact_wire", "messenger_wire"):
+        wire = getattr(catenary, name)
+        if wire is None:
+            continue
         if wire.tension < 1000:
             warnings.append(
                 f"{name}.tension = {wire.tension:g} N is below 1000 N: looks like kN, the field takes N"
@@ -216,6 +235,10 @@ def _without_effect(catenary: Catenary) -> list[str]:
                 f"support {i}: stitch_wire_length = {support.stitch_wire_length:g} m has no effect: no stitch"
                 " wire hangs there",
             )
+    if catenary.cant_base != 1.5 and not any(support.cant for support in catenary.supports):
+        found["cant"] = f"cant_base = {catenary.cant_base:g} m has no effect: no support has a cant"
+    if catenary.messenger_wire is None:
+        found |= dict(_of_messenger(catenary))
     if catenary.stitch_wire and not catenary.stitched_supports:
         found["stitch"] = "stitch_wire has no effect: no support between the line's ends has one"
     for i, span in enumerate(catenary.spans, start=1):
@@ -227,6 +250,18 @@ def _without_effect(catenary: Catenary) -> list[str]:
                 " droppers, where a dropper without a height_offset has to be",
             )
     return list(found.values()) + _anchored(catenary)
+
+
+def _of_messenger(catenary: Catenary) -> Iterator[tuple[str, str]]:
+    """Values that a line without a messenger wire does not need."""
+    if catenary.system_height != type(catenary).model_fields["system_height"].default:
+        yield "height", f"system_height = {catenary.system_height:g} m has no effect without a messenger_wire"
+    names = ("messenger_stiffness", "messenger_lateral_stiffness", "messenger_stagger", "system_height")
+    for i, support in enumerate(catenary.supports, start=1):
+        for name in names:
+            if value := getattr(support, name):
+                shown = value if isinstance(value, str) else f"{value:g}"
+                yield name, f"support {i}: {name} = {shown} has no effect without a messenger_wire"
 
 
 def _anchored(catenary: Catenary) -> list[str]:
@@ -258,13 +293,16 @@ def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Rang
     yield "", catenary, _LINE
     yield "damping.", catenary.damping, _DAMPING
     yield "contact_wire.", catenary.contact_wire, _WIRE
-    yield "messenger_wire.", catenary.messenger_wire, _WIRE
+    if catenary.messenger_wire:
+        yield "messenger_wire.", catenary.messenger_wire, _WIRE
     if catenary.stitch_wire:
         yield "stitch_wire.", catenary.stitch_wire, _WIRE
     for i, span in enumerate(catenary.spans, start=1):
         yield f"span {i}: ", span, _SPAN
         for n, dropper in enumerate(span.droppers, start=1):
             yield f"span {i}: dropper {n}: ", dropper, _DROPPER
+    for n, item in enumerate(catenary.equipment, start=1):
+        yield f"equipment {n}: ", item, _EQUIPMENT
     for i, support in enumerate(catenary.supports, start=1):
         yield f"support {i}: ", support, _SUPPORT
         if support.steady_arm:
@@ -274,7 +312,7 @@ def _parts(catenary: Catenary) -> Iterator[tuple[str, Parameters, dict[str, Rang
 def _unusual(owner: Parameters, usual: dict[str, Range]) -> Iterator[str]:
     for name, (least, most, unit) in usual.items():
         value = getattr(owner, name, None)
-        if value and not least <= abs(value) <= most:
+        if value and not isinstance(value, str) and not least <= abs(value) <= most:
             bounds = f"{least:g} to {most:g}" if least else f"at most {most:g}"
             yield f"{name} = {value:g} {unit}: overhead lines have {bounds} {unit}; look at the unit"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import inf
 from operator import ge, gt, le
@@ -23,7 +23,8 @@ from catenary_fe.layout.current_collection import (
     mean_force_limit,
 )
 from catenary_fe.layout.parameters import changed_by_copy
-from catenary_fe.results.quantities import DIGITS, FORCE, NON_UNIFORMITY
+from catenary_fe.layout.terminations import slowest_contact_wire
+from catenary_fe.results.quantities import DIGITS, FORCE, LATERAL, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.results.statistics import ForceStatistics
@@ -127,6 +128,7 @@ class KeyFigures:
     catenary, pantographs : what ran
     statistics : of each pantograph's contact force over the evaluated spans
     uplift : [m] largest at each support of the evaluated spans, by its number from 1
+    lateral : [m] farthest contact from the middle of each pantograph's head; None where it is not known
     non_uniformity : of the elasticity, (e_max − e_min)/(e_max + e_min); None where it was not computed
     """
 
@@ -136,6 +138,7 @@ class KeyFigures:
     statistics: Sequence[ForceStatistics]
     uplift: Mapping[int, float]
     non_uniformity: float | None = None
+    lateral: Sequence[float | None] = ()
 
 
 @checked
@@ -147,8 +150,9 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
 
     Limits: mean force of EN 50367, σ ≤ 0.3 F_m, F_m − 3σ > 0, the largest force, 0.1 or 0.2 % of the time in
     losses of contact longer than 5 ms, clearance for twice the uplift at steady arms that state theirs
-    (``uplift_room``), 0.7 of the wave speed. The elasticity's non-uniformity is reported where the run holds
-    it (:meth:`Run.with_elasticity`); no limit of it is known here.
+    (``uplift_room``), contact within half the width of heads that state theirs, 0.7 of the wave speed. The
+    elasticity's non-uniformity is reported where the run holds it (:meth:`Run.with_elasticity`); no limit of
+    it is known here.
 
     Raises InputError for a partial run.
     """
@@ -163,6 +167,7 @@ def criteria_rows(run: Run, system: PowerSystem, *, filter: FilterKind = "causal
         statistics=run.contact_force_statistics(filter=filter),
         uplift=run.uplift_by_support(),
         non_uniformity=curve.non_uniformity if curve else None,
+        lateral=[run.largest_contact_lateral(i) for i in range(len(run.pantographs))],
     )
     return judge(figures, system)
 
@@ -174,6 +179,7 @@ def judge(figures: KeyFigures, system: PowerSystem) -> list[Criterion]:
         is_set = pantograph.target_mean_force(figures.speed) is not None
         rows += _mean_force(statistics, system, figures.speed, MEAN_FORCE_TOLERANCE if is_set else 0.0)
         rows += _spread(statistics, system, figures.speed)
+    rows += _lateral(figures)
     rows += _uplift(figures)
     rows.append(_speed(figures))
     rows += _gradients(figures)
@@ -247,6 +253,21 @@ def _mean_force(s: ForceStatistics, system: PowerSystem, speed: float, tolerance
     ]
 
 
+def _lateral(figures: KeyFigures) -> Iterator[Criterion]:
+    """The contact stays on the part of the head that may touch, where the pantograph says how wide it is."""
+    each = zip(figures.pantographs, figures.statistics, figures.lateral, strict=False)
+    for pantograph, statistics, y in each:
+        if y is not None and pantograph.head:
+            yield Criterion(
+                name=LATERAL.name,
+                pantograph=statistics.pantograph,
+                value=LATERAL.shown(y),
+                limit=LATERAL.shown(pantograph.head.width / 2),
+                unit=LATERAL.unit,
+                source="half of the pantograph's head.width",
+            )
+
+
 def _spread(s: ForceStatistics, system: PowerSystem, speed: float) -> list[Criterion]:
     largest, loss = _against(force_limit(system, speed)), contact_loss_limit(speed)
     share = f"{DEVIATION_SHARE:g} of the mean force (secondary source)"
@@ -317,7 +338,7 @@ def _speed(figures: KeyFigures) -> Criterion:
     return Criterion(
         name="speed",
         value=round(3.6 * figures.speed, 9),
-        limit=3.6 * WAVE_SPEED_SHARE * figures.catenary.contact_wire.wave_speed,
+        limit=3.6 * WAVE_SPEED_SHARE * slowest_contact_wire(figures.catenary).wave_speed,
         unit="km/h",
         source=f"{WAVE_SPEED_SHARE:g} of the wave speed (secondary source)",
     )

@@ -55,6 +55,7 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
             "contact_force_N": data["contact_force"].values[i],
             "contact_force_0_20_Hz_N": filtered[i],
             "wire_height_m": data["wire_height"].values[i],
+            **_contact_places(data, i),
             **{f"mass_{n + 1}_height_m": z for n, z in enumerate(masses) if np.isfinite(z).all()},
         }
     tables["support_uplift"] = {"time_s": run.time} | {
@@ -64,14 +65,27 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
         )
     }
     spans = data["dropper_span"].values
-    first = np.searchsorted(spans, spans)  # number of the first dropper in each one's span
+    numbers = run.catenary.dropper_numbers
     tables["dropper_force"] = {"time_s": run.time} | {
-        f"span_{spans[i]}_dropper_{i - first[i] + 1}_at_{_metres(x)}_m_force_N": values
+        f"span_{spans[i]}_dropper_{numbers[i]}_at_{_metres(x)}_m_force_N": values
         for i, (x, values) in enumerate(
             zip(data["dropper_position"].values, data["dropper_force"].values, strict=True)
         )
     }
     return tables
+
+
+def _contact_places(data: Any, pantograph: int) -> Table:
+    """Columns of the contacts' places on a pantograph's head, where a run in space has them."""
+    if "contact_lateral" not in data:
+        return {}
+    each = data["contact_lateral"].values[pantograph]
+    several = len(each) > 1
+    return {
+        f"{f'contact_{n}_' if several else 'contact_'}lateral_m": y
+        for n, y in enumerate(each, start=1)
+        if np.isfinite(y).any()
+    }
 
 
 def _metres(x: float) -> str:

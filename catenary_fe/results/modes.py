@@ -92,7 +92,7 @@ class Modes:
 
     catenary : the line
     frequencies : [Hz], shape (modes,)
-    contact, messenger : shapes of the wires
+    contact, messenger : shapes of the wires; None without a messenger wire
     along, sideways : shape (modes,), shares of the kinetic energy that move along the track and across it
     damping_ratios : shape (modes,), of critical damping
     """
@@ -100,7 +100,7 @@ class Modes:
     catenary: Catenary
     frequencies: Floats
     contact: WireShapes
-    messenger: WireShapes
+    messenger: WireShapes | None
     along: Floats
     sideways: Floats
     damping_ratios: Floats
@@ -116,7 +116,7 @@ class Modes:
             self.catenary,
             self.frequencies[:n],
             self.contact.first(n),
-            self.messenger.first(n),
+            self.messenger and self.messenger.first(n),
             self.along[:n],
             self.sideways[:n],
             self.damping_ratios[:n],
@@ -173,12 +173,12 @@ class Modes:
 
         return plot_mode(self, mode, ax=ax)
 
-    def _wires(self) -> tuple[tuple[float, WireShapes], tuple[float, WireShapes]]:
+    def _wires(self) -> list[tuple[float, WireShapes]]:
         catenary = self.catenary
-        return (
-            (catenary.contact_wire.mass_per_length, self.contact),
-            (catenary.messenger_wire.mass_per_length, self.messenger),
-        )
+        wires = [(catenary.contact_wire.mass_per_length, self.contact)]
+        if catenary.messenger_wire and self.messenger:
+            wires.append((catenary.messenger_wire.mass_per_length, self.messenger))
+        return wires
 
     def _symmetry(self, mode: int) -> Symmetry:
         """By the correlation of the shape with its mirror image, weighted with the wires' masses."""
@@ -199,7 +199,7 @@ class Modes:
         registered = np.array([i in (0, supports.size - 1) or s.steady_arm is not None
                                for i, s in enumerate(catenary.supports)])  # fmt: skip
         samples = []
-        for (mass, wire), held in zip(self._wires(), (supports[registered], supports), strict=True):
+        for (mass, wire), held in zip(self._wires(), (supports[registered], supports), strict=False):
             for a, b in pairwise(np.unique(np.concatenate([held, droppers]))):
                 x = np.linspace(a, b, _SAMPLES + 1)
                 samples.append((mass, x, np.interp(x, wire.x, wire.values[mode])))

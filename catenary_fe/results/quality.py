@@ -243,7 +243,7 @@ def _element_passing(run: Run) -> Iterator[Check]:
     if not longest:
         return
     frequency, catenary = run.speed / longest, run.catenary
-    clamps = np.unique(np.concatenate([catenary.dropper_positions, catenary.support_positions]))
+    clamps = np.unique(np.concatenate([catenary.lower_clamp_positions, catenary.support_positions]))
     if frequency >= CUT_OFF or FINE * longest > np.median(np.diff(clamps)):
         text = (
             f"at this rate elements of {longest:g} m are passed, inside the filter's band: the force has a"
@@ -303,7 +303,7 @@ def _end_reflection(run: Run) -> Iterator[Check]:
     up to 6 % off; with two or more, 9 % at most, and σ as close as that of long lines to each other.)
     """
     catenary, start = run.catenary, run.data["position"].values[:, 0]
-    fastest = max(catenary.contact_wire.wave_speed, catenary.messenger_wire.wave_speed)
+    fastest = max(w.wave_speed for w in (catenary.contact_wire, catenary.messenger_wire) if w)
     end = float(catenary.support_positions[max(run.evaluated_spans)])
     leaving = (end - start.min()) / run.speed
     behind = catenary.length - end + catenary.spans[-1].length  # from the last but one support and back
@@ -328,11 +328,13 @@ def _start_transient(run: Run) -> Iterator[Check]:
     numbers = sorted(run.evaluated_spans)
     if first > 1 and catenary.support_positions[first - 2] >= started and len(numbers) == 1:
         numbers = [first - 1, *numbers]
-    beside = _beside_overlaps(catenary)
+    at = catenary.support_positions
+    carried = {int(np.searchsorted(at, item.middle(catenary))) for item in catenary.equipment}
+    apart = _beside_overlaps(catenary) | carried
     equal = [
         (a, b)
         for a, b in pairwise(numbers)
-        if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1] and not {a, b} & beside
+        if b == a + 1 and catenary.spans[a - 1] == catenary.spans[b - 1] and not {a, b} & apart
     ]
     if not equal:
         return
@@ -369,7 +371,7 @@ def _slack_droppers(run: Run) -> Iterator[Check]:
         return
     slack = (run.data["dropper_force"].values[inside] <= 0).mean(axis=1)
     longest = int(inside[slack.argmax()])
-    number = longest - int(np.searchsorted(spans, spans[longest])) + 1
+    number = int(run.catenary.dropper_numbers[longest])
     text = (
         "share of the time that droppers of the evaluated spans are slack, longest dropper"
         f" {number} of span {spans[longest]} with {100 * slack.max():.0f} %; look at the uplift and at the"

@@ -98,11 +98,12 @@ FORCE = {
 }  # fmt: skip
 """Figures of a pantograph's contact force over the evaluated spans, by their attribute in ForceStatistics."""
 UPLIFT = Quantity("max_support_uplift_mm", "largest uplift at a support", "mm", short="uplift")
+LATERAL = Quantity("largest_contact_lateral_mm", "farthest contact from the middle of a head", "mm")
 SLACK_DROPPERS = Quantity("slack_droppers", "droppers that went slack", "")
 DROPPER_FORCE = Quantity("largest_dropper_force_N", "largest force of a dropper", "N")
 NON_UNIFORMITY = Quantity("elasticity_non_uniformity_percent", "non-uniformity of the elasticity", "%")
 CHECKS_FAILED = Quantity("checks_failed", "checks failed", "")
-OF_RUN = (UPLIFT, SLACK_DROPPERS, DROPPER_FORCE, NON_UNIFORMITY)
+OF_RUN = (UPLIFT, LATERAL, SLACK_DROPPERS, DROPPER_FORCE, NON_UNIFORMITY)
 """Figures of a whole run."""
 
 

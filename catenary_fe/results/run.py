@@ -21,6 +21,7 @@ from catenary_fe.results.quality import run_checks
 from catenary_fe.results.quantities import (
     CHECKS_FAILED,
     DROPPER_FORCE,
+    LATERAL,
     NON_UNIFORMITY,
     SLACK_DROPPERS,
     UPLIFT,
@@ -43,10 +44,10 @@ class Run:
     """Histories of a run, as an xarray Dataset with units, and the inputs they were computed from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
-        dropper_force, support_uplift, and contact_wire_height and messenger_wire_height where the whole wires
-        were stored; of nonlinear runs tension_change, energy, driven_work and lost_work; elasticity_uplift
-        where it was computed; each has ``units`` and ``long_name``. Attributes hold the inputs, their hash,
-        versions and settings.
+        dropper_force, support_uplift, in space contact_lateral, of several sections section_force, and
+        contact_wire_height and messenger_wire_height where the whole wires were stored; of nonlinear runs
+        tension_change, energy, driven_work and lost_work; elasticity_uplift where it was computed; each has
+        ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes
     """
 
@@ -226,6 +227,20 @@ class Run:
             self.window(i, numbers)
         return max(self.uplift_by_support(numbers).values())
 
+    def largest_contact_lateral(self, pantograph: int = 0) -> float | None:
+        """[m] farthest place of a contact from the middle of a head, over the evaluated spans.
+
+        pantograph : its number, from 0
+
+        None of a run in the plane, which knows no such place, and where nothing touched the head. Raises
+        InputError for a pantograph that did not run.
+        """
+        whole("pantograph", pantograph, least=0, most=self.data.sizes["pantograph"] - 1)
+        if "contact_lateral" not in self.data:
+            return None
+        places = np.abs(self.data["contact_lateral"].values[pantograph][:, self.window(pantograph)])
+        return float(np.nanmax(places)) if np.isfinite(places).any() else None
+
     def uplift_by_support(self, spans: Sequence[int] | None = None) -> dict[int, float]:
         """[m] largest uplift in the whole run, by the number (from 1) of each support of the given spans.
 
@@ -269,6 +284,8 @@ class Run:
         names = [str(name) for name in self.data["pantograph"].values]
         figures, curve = self.figures(filter), self.elasticity
         uplift = self.uplift_by_support() if self.reached else {}
+        places = [self.largest_contact_lateral(i) if self.reached else None for i in range(len(names))]
+        lateral = [None if y is None else LATERAL.shown(y) for y in places]
         return ({"partial": self.partial.as_dict()} if self.partial else {}) | {
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
@@ -282,6 +299,8 @@ class Run:
             "governing_pantograph": governing(self.figures(filter)),
             UPLIFT.key: UPLIFT.shown(self.largest_support_uplift()) if self.reached else None,
             "support_uplift_mm": {str(n): UPLIFT.shown(z) for n, z in uplift.items()},
+            LATERAL.key: max((y for y in lateral if y is not None), default=None),
+            "contact_lateral_mm": lateral,
             SLACK_DROPPERS.key: self.slackened_droppers.size,
             DROPPER_FORCE.key: self.largest_dropper_force,
             NON_UNIFORMITY.key: NON_UNIFORMITY.shown(curve.non_uniformity) if curve else None,
@@ -306,6 +325,12 @@ class Run:
         from catenary_fe.views import plot_contact_force
 
         return plot_contact_force(self, filter=filter, ax=ax)
+
+    def plot_contact_lateral(self, ax: Axes | None = None) -> Axes:
+        """Place of the contact on the heads. See :func:`catenary_fe.views.plot_contact_lateral`."""
+        from catenary_fe.views import plot_contact_lateral
+
+        return plot_contact_lateral(self, ax=ax)
 
     def plot_support_uplift(self, ax: Axes | None = None) -> Axes:
         """Uplift at the supports. See :func:`catenary_fe.views.plot_support_uplift`."""

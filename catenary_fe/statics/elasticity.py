@@ -64,7 +64,7 @@ def solve_statics(shape: Shape, forces: Sequence[tuple[float, float]] = ()) -> S
     total = (system.reference + moved).reshape(-1, 2 * system.axes)
     ends, up = mesh.first_nodes, system.axes - 1
     contact = total[: ends[1]]
-    messenger = total[ends[mesh.contact_wires] : ends[mesh.contact_wires + 1]]
+    messenger = total[ends[mesh.contact_wires] : ends[mesh.first_stitch]]
     droppers = system.droppers
     return StaticState(
         contact_wire_x=contact[:, 0],

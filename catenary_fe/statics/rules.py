@@ -30,7 +30,7 @@ def check_pulls(catenary: Catenary, pulls: Floats) -> None:
 
 def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
-    tension = catenary.messenger_wire.tension
+    tension = catenary.messenger_wire.tension if catenary.messenger_wire else 0.0
     _report(
         f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
         f" system_height or the messenger wire's tension of {tension:g} N"
@@ -86,6 +86,16 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
                     " give more stagger, or a stiffness instead of a length"
                 )
     _report(dict.fromkeys(faults))
+
+
+def check_reach(catenary: Catenary, lengths: Floats) -> None:
+    """Raises InputError for clamps that slid further than droppers of lengths [m], shape (droppers,), reach."""
+    _report(
+        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches; it"
+        " slides until the dropper is taut"
+        for name, dropper, length in zip(dropper_names(catenary), catenary.droppers, lengths, strict=True)
+        if abs(dropper.clamp_shift) >= length
+    )
 
 
 def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) -> Floats:

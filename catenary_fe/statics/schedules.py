@@ -123,13 +123,13 @@ class SupportRow:
     curve_radius_before_m: float | None
     curve_radius_after_m: float | None
     arms: tuple[ArmRow, ...]
-    messenger_wire_height_m: float
-    system_height_m: float
-    messenger_stagger_m: float
-    messenger_vertical_N: float  # noqa: N815
-    messenger_lateral_N: float  # noqa: N815
+    messenger_wire_height_m: float | None
+    system_height_m: float | None
+    messenger_stagger_m: float | None
+    messenger_vertical_N: float | None  # noqa: N815
+    messenger_lateral_N: float | None  # noqa: N815
     contact_wire_tension_kN: float  # noqa: N815
-    messenger_wire_tension_kN: float  # noqa: N815
+    messenger_wire_tension_kN: float | None  # noqa: N815
     stitch_wire_tension_kN: float | None = None  # noqa: N815
     stitch_wire_length_m: float | None = None
     section: int | None = None
@@ -159,13 +159,12 @@ class SupportRow:
 def dropper_rows(shape: Shape) -> list[DropperRow]:
     """One row a dropper, in order."""
     catenary, mesh = shape.catenary, shape.mesh
-    first = np.searchsorted(catenary.dropper_spans, catenary.dropper_spans)  # of each dropper's span
     return [
         DropperRow(
             span=(span := int(catenary.dropper_spans[i])),
             from_support=span,
             to_support=span + 1,
-            dropper=i - int(first[i]) + 1,
+            dropper=int(catenary.dropper_numbers[i]),
             chainage_m=float(catenary.dropper_positions[i]),
             position_m=dropper.position,
             cut_length_mm=round(1e3 * float(shape.dropper_lengths[i])),
@@ -183,16 +182,15 @@ def dropper_rows(shape: Shape) -> list[DropperRow]:
 
 def support_rows(shape: Shape) -> list[SupportRow]:
     """One row a support, in order."""
-    pulls = element_pulls(shape.catenary, shape.mesh)[shape.mesh.contact_wires]
-    return [_support_row(shape, i, pulls) for i in range(len(shape.catenary.supports))]
+    pulls = element_pulls(shape.catenary, shape.mesh)
+    own = pulls[shape.mesh.contact_wires] if shape.mesh.messenger else None
+    return [_support_row(shape, i, own) for i in range(len(shape.catenary.supports))]
 
 
-def _support_row(shape: Shape, i: int, pulls: Floats) -> SupportRow:
-    """pulls : [N], shape (elements,), of the messenger wire along the track"""
+def _support_row(shape: Shape, i: int, pulls: Floats | None) -> SupportRow:
+    """pulls : [N], shape (elements,), of the messenger wire along the track, if there is one"""
     catenary = shape.catenary
     before, after = ([None, *catenary.spans, None][i + side] for side in (0, 1))
-    node = int(shape.mesh.messenger.supports[i])
-    height, force = float(shape.messenger_wire.z[node]), shape.installation.support_forces[i]
     arms = tuple(_arm_row(shape, wire, i) for wire in range(shape.mesh.contact_wires))
     stitch = catenary.stitch_wire if catenary.has_stitch_wire(i) else None
     return SupportRow(
@@ -200,19 +198,31 @@ def _support_row(shape: Shape, i: int, pulls: Floats) -> SupportRow:
         chainage_m=float(catenary.support_positions[i]),
         span_before_m=before.length if before else None,
         span_after_m=after.length if after else None,
-        curve_radius_before_m=(before.curve_radius or None) if before else None,
-        curve_radius_after_m=(after.curve_radius or None) if after else None,
+        curve_radius_before_m=before.radius_at(end=True) if before else None,
+        curve_radius_after_m=after.radius_at(end=False) if after else None,
         arms=arms,
-        messenger_wire_height_m=height,
-        system_height_m=height - arms[0].contact_wire_height_m,
-        messenger_stagger_m=float(shape.messenger_wire.y[node]),
-        messenger_vertical_N=float(force[-1]),
-        messenger_lateral_N=float(force[0]) if force.size > 1 else 0.0,
         contact_wire_tension_kN=catenary.contact_wire.tension / 1e3,
-        messenger_wire_tension_kN=float(pulls[min(node, pulls.size - 1)]) / 1e3,
+        **_of_messenger(shape, i, arms[0].contact_wire_height_m, pulls),
         stitch_wire_tension_kN=stitch.tension / 1e3 if stitch else None,
         stitch_wire_length_m=float(catenary.stitch_wire_lengths[i]) if stitch else None,
     )
+
+
+def _of_messenger(shape: Shape, support: int, contact_height: float, pulls: Floats | None) -> dict[str, Any]:
+    """What a row says of the messenger wire, by column; None each without one."""
+    if pulls is None or shape.mesh.messenger is None:
+        columns = ("wire_height_m", "stagger_m", "vertical_N", "lateral_N", "wire_tension_kN")
+        return {"system_height_m": None} | {f"messenger_{name}": None for name in columns}
+    node = int(shape.mesh.messenger.supports[support])
+    height, force = float(shape.messenger_wire.z[node]), shape.installation.support_forces[support]
+    return {
+        "messenger_wire_height_m": height,
+        "system_height_m": height - contact_height,
+        "messenger_stagger_m": float(shape.messenger_wire.y[node]),
+        "messenger_vertical_N": float(force[-1]),
+        "messenger_lateral_N": float(force[0]) if force.size > 1 else 0.0,
+        "messenger_wire_tension_kN": float(pulls[min(node, pulls.size - 1)]) / 1e3,
+    }
 
 
 def _arm_row(shape: Shape, wire: int, support: int) -> ArmRow:

@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 Rows = dict[str, tuple[Any, ...]]  # dimensions, values, and of a quantity its unit and name
 _NOTES = 3  # by themselves
 SAME_PLACE = 1e-3  # [m] of masts
-CHECKPOINT_FORM = 4  # rises when what a checkpoint holds changes
+CHECKPOINT_FORM = 5  # rises when what a checkpoint holds changes
 
 
 def make_run(
@@ -74,6 +74,7 @@ def make_run(
         words = "contact force of each tension section's wires, unfiltered"
         variables["section_force"] = (("pantograph", "section", "time"), history.section_force, "N", words)
         coordinates["section"] = ("section", np.arange(history.section_force.shape[1]) + 1)
+    _add_contact_places(variables, coordinates, shape, case, history)
     _add_wire_shapes(variables, coordinates, shape, history)
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, case.speed, time, method)
@@ -140,7 +141,24 @@ def _wire_names(shape: Shape) -> list[str]:
         return shape.joint.wires(each)
     contact = ["contact_wire", "left_contact_wire"][: len(shape.contact_wires)]
     stitch = [f"stitch_wire_{i + 1}" for i in shape.catenary.stitched_supports]
-    return [*contact, "messenger_wire", *stitch]
+    return [*contact, *(["messenger_wire"] if shape.mesh.messenger else []), *stitch]
+
+
+def _add_contact_places(
+    variables: Rows, coordinates: Rows, shape: Shape, case: RunCase, history: History
+) -> None:
+    """Where the wires lie on the heads, in space: of each strip on each contact wire."""
+    if not any(lateral.size for lateral in history.contact_lateral):
+        return
+    most = max(len(lateral) for lateral in history.contact_lateral)
+    found = np.full((len(history.contact_lateral), most, history.time.size), np.nan)
+    for i, lateral in enumerate(history.contact_lateral):
+        found[i, : len(lateral)] = lateral
+    words = "place of the contact on the head, to the left of its middle"
+    variables["contact_lateral"] = (("pantograph", "contact", "time"), found, "m", words)
+    wires = len(shape.contact_wires)
+    names = [f"strip {n // wires + 1}, contact wire {n % wires + 1}" for n in range(most)]
+    coordinates["contact"] = ("contact", names)
 
 
 def _add_wire_shapes(variables: Rows, coordinates: Rows, shape: Shape, history: History) -> None:

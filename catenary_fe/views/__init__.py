@@ -11,6 +11,7 @@ from catenary_fe.views.film import film
 from catenary_fe.views.layout import plot_layout, plot_plan
 from catenary_fe.views.run import (
     plot_contact_force,
+    plot_contact_lateral,
     plot_criteria,
     plot_dropper_forces,
     plot_energy,
@@ -22,7 +23,8 @@ from catenary_fe.views.static import plot_elasticity, plot_mode, plot_spectrum, 
 from catenary_fe.views.waves import plot_family, plot_run_waves, plot_space_time, plot_surface
 
 __all__ = [
-    "film", "plot_contact_force", "plot_criteria", "plot_dropper_forces", "plot_elasticity",
+    "film", "plot_contact_force", "plot_contact_lateral", "plot_criteria", "plot_dropper_forces",
+    "plot_elasticity",
     "plot_energy", "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
     "plot_layout",
     "plot_mode", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum", "plot_static_shape",

@@ -61,6 +61,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     stretch.draw_lines(ax, lines, "z")
     _draw_droppers(ax, part, lines, stretch.upper_wires(catenary, shape))
     _draw_supports(ax, part, lines, low)
+    _draw_equipment(ax, part, lines)
     scale = "to scale"
     if to_scale:
         ax.set_aspect("equal")
@@ -96,6 +97,23 @@ def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], l
     style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
 
 
+def _draw_equipment(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line]) -> None:
+    """Equipment over its length on its wire, with its name in a close drawing."""
+    catenary = part.catenary
+    label: str | None = "equipment"
+    for item in catenary.equipment:
+        middle = item.middle(catenary)
+        if not part.inside(np.array([middle]))[0]:
+            continue
+        wire = next(line for line in lines if line.name == item.wire)
+        x = np.linspace(*item.ends(catenary), 9)
+        ax.plot(x, wire.height(x), color=style.SUPPORT, linewidth=5, solid_capstyle="round", label=label)
+        label = None
+        if part.is_close and item.name:
+            place = (middle, float(wire.height(x)[4]))
+            style.annotate(ax, item.name, place, (0, -6), ha="center", va="top")
+
+
 def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     x, spans = part.support_x, [part.catenary.spans[n - 1] for n in part.spans]
     middles = (x[:-1] + x[1:]) / 2
@@ -109,6 +127,8 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
     distances = [f"{round(b - a, 3):g}" for a, b in pairwise(stations)]
     if style.label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
         ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
+    if part.catenary.messenger_wire is None:
+        return
     bottom, top = (
         stretch.served_height(lines, x[:1])[0],
         part.catenary.messenger_support_heights[part.first - 1],
@@ -145,7 +165,7 @@ def plot_plan(
     def draw(ax: Axes, part: stretch.Stretch) -> None:
         _draw_plan(ax, part, shape, head_width)
 
-    curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if span.curve_radius]
+    curved = [n for n, span in enumerate(shape.catenary.spans, start=1) if any(span.curvatures)]
     among = stretch.overlap_spans(shape.catenary) or curved
     return stretch.draw_line(shape.catenary, draw, spans, ax, (11.0, 4.2), among)
 
@@ -174,11 +194,28 @@ def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> N
     style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
 
 
-def _curves(part: stretch.Stretch) -> list[tuple[float, int, int]]:
-    """Radius, first and last span of each run of spans that curve alike."""
-    groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curve_radius or 0.0)
-    found = [(radius, list(numbers)) for radius, numbers in groups]
-    return [(radius, numbers[0], numbers[-1]) for radius, numbers in found if radius]
+def _curves(part: stretch.Stretch) -> list[tuple[tuple[float, ...], int, int]]:
+    """Radii (0: straight), first and last span of each run of spans that curve alike.
+
+    One radius of a circular curve, two of a transition.
+    """
+    groups = groupby(part.spans, key=lambda n: part.catenary.spans[n - 1].curvatures)
+    found = [(curvatures, list(numbers)) for curvatures, numbers in groups if any(curvatures)]
+    return [(_radii(*curvatures), numbers[0], numbers[-1]) for curvatures, numbers in found]
+
+
+def _radii(begin: float, end: float) -> tuple[float, ...]:
+    radii = (1 / begin if begin else 0.0, 1 / end if end else 0.0)
+    return radii[:1] if begin == end else radii
+
+
+def _side(radii: tuple[float, ...]) -> str:
+    sides = dict.fromkeys("left" if radius > 0 else "right" for radius in radii if radius)
+    return " then ".join(sides)
+
+
+def _radius(radii: tuple[float, ...]) -> str:
+    return " to ".join(f"{abs(radius):g}" if radius else "∞" for radius in radii)
 
 
 def _curve(part: stretch.Stretch) -> str:
@@ -186,26 +223,25 @@ def _curve(part: stretch.Stretch) -> str:
     if not curves:
         return "straight track"
     if len(curves) > 2:
-        radii = [abs(radius) for radius, _, _ in curves]
-        return f"{len(curves)} curves, radii {min(radii):g} to {max(radii):g} m"
+        known = [abs(radius) for radii, _, _ in curves for radius in radii if radius]
+        return f"{len(curves)} curves, radii {min(known):g} to {max(known):g} m"
     said = []
-    for radius, first, last in curves:
+    for radii, first, last in curves:
         where = stretch.Stretch(part.catenary, first, last)
         here = "" if where == part else f", in {where}"
-        said.append(f"curve to the {'left' if radius > 0 else 'right'}, radius {abs(radius):g} m{here}")
+        said.append(f"curve to the {_side(radii)}, radius {_radius(radii)} m{here}")
     return " and ".join(said)
 
 
 def _draw_curves(ax: Axes, part: stretch.Stretch) -> None:
     """A bar along the bottom under each curve."""
     supports, axes = part.catenary.support_positions, ax.get_xaxis_transform()
-    for i, (radius, first, last) in enumerate(_curves(part)):
+    for i, (radii, first, last) in enumerate(_curves(part)):
         ends = supports[first - 1], supports[last]
         ax.plot(ends, (0.1, 0.1), color=_CURVE, linewidth=3.0, solid_capstyle="butt", transform=axes,
                 label=None if i else "curve")  # fmt: skip
-        side = "left" if radius > 0 else "right"
         if (ends[1] - ends[0]) > 0.08 * (part.end - part.start):
-            text = f"{side}, R {abs(radius):g} m"
+            text = f"{_side(radii)}, R {_radius(radii)} m"
             box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
             ax.text(
                 sum(ends) / 2, 0.025, text, transform=axes, ha="center", fontsize=8, color=_CURVE, bbox=box

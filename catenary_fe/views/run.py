@@ -31,6 +31,8 @@ def run_pictures(run: Run, shape: Shape, filter: FilterKind) -> Iterator[tuple[s
     yield "contact_force", plot_contact_force(run, filter=filter)
     if "section_force" in run.data:
         yield "handover", plot_handover(run, filter=filter)
+    if "contact_lateral" in run.data:
+        yield "contact_lateral", plot_contact_lateral(run)
     yield "support_uplift", plot_support_uplift(run)
     yield "dropper_forces", plot_dropper_forces(run)
     if run.has_energy:
@@ -63,6 +65,37 @@ def plot_contact_force(run: Run, *, filter: FilterKind = "causal", ax: Axes | No
     style.headroom(ax, 0.18 if single else 0.1 + 0.06 * len(figures))
     said = f" ({_in_words(figures[0])})" if single else ""
     return style.finish_run(ax, run, style.ALONG, "contact force (N)", f": contact force{said}")
+
+
+@checked
+@style.styled
+def plot_contact_lateral(run: Run, *, ax: Axes | None = None) -> Axes:
+    """Where the wires lie on the heads along the line: to the left of a head's middle, with its half width.
+
+    Raises InputError for a run in the plane, which knows no such place.
+    """
+    if "contact_lateral" not in run.data:
+        raise InputError(
+            "the run is in the vertical plane: it has no lateral places; model the line in space"
+        )
+    ax = style.new_axes(ax, (11.0, 3.4))
+    supports, names = run.data["support_position"].values, run.data["pantograph"].values
+    style.mark_supports(ax, supports)
+    style.mark_spans(ax, supports, run.evaluated_spans)
+    places = run.data["contact_lateral"].values
+    for i, (each, colour) in enumerate(zip(places, style.distinct(len(places)), strict=True)):
+        for n, y in enumerate(each):
+            label = str(names[i]) if n == 0 else None
+            ax.plot(run.data["position"].values[i], y, color=colour, linewidth=1.1, label=label)
+    half = head_width(run.pantographs) / 2
+    said = "half of the head" if any(p.head for p in run.pantographs) else "half of a usual head"
+    for side in (-half, half):
+        ax.axhline(side, color=style.SUPPORT, linewidth=0.9, linestyle="--", label=said if side > 0 else None)
+    ax.set_ylim(-1.35 * half, 1.6 * half)
+    ax.margins(x=0.01)
+    style.legend(ax, 3)
+    label = "to the left of the head's middle (m)"
+    return style.finish_run(ax, run, style.ALONG, label, ": place of the contact on the head")
 
 
 @checked

@@ -236,6 +236,8 @@ def _sketch(catenary: Catenary) -> list[tuple[Floats, Floats]]:
     z = np.concatenate([catenary.contact_wire_heights, catenary.design_heights])
     order = np.argsort(x)
     contact_wires = len(catenary.contact_wire_offsets)
+    if catenary.messenger_wire is None:
+        return [(x[order], z[order])] * contact_wires
     mass = contact_wires * catenary.contact_wire.mass_per_length + catenary.messenger_wire.mass_per_length
     along = np.unique(np.concatenate([np.linspace(0, catenary.length, 60 * len(catenary.spans)), supports]))
     span = np.clip(np.searchsorted(supports, along, side="right") - 1, 0, len(catenary.spans) - 1)
@@ -253,7 +255,8 @@ def _sketch(catenary: Catenary) -> list[tuple[Floats, Floats]]:
 def _names(catenary: Catenary) -> list[str]:
     """Of each wire, in the order of the mesh."""
     contact = ["contact wire"] * len(catenary.contact_wire_offsets)
-    return [*contact, "messenger wire", *["stitch wire"] * len(catenary.stitched_supports)]
+    messenger = ["messenger wire"] if catenary.messenger_wire else []
+    return [*contact, *messenger, *["stitch wire"] * len(catenary.stitched_supports)]
 
 
 def upper_wires(catenary: Catenary, shape: Shape | None) -> NDArray[np.int64]:

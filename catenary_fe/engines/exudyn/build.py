@@ -71,14 +71,14 @@ class ExudynModel:
         return self.wires[: len(self.system.contact_paths)]
 
     @property
-    def messenger_wire(self) -> WireParts:
-        """The messenger wire."""
-        return self.wires[len(self.system.contact_paths)]
+    def messenger_wire(self) -> WireParts | None:
+        """The messenger wire; None without one."""
+        return self.wires[len(self.system.contact_paths)] if self.shape.mesh.messenger else None
 
     @property
     def stitch_wires(self) -> tuple[WireParts, ...]:
         """The stitch wires, none without them."""
-        return self.wires[len(self.system.contact_paths) + 1 :]
+        return self.wires[self.shape.mesh.first_stitch :]
 
     def name(self, coordinate: int) -> str:
         """A coordinate of the assembled ``mbs`` in words."""

@@ -303,6 +303,10 @@ class Contacts:
         """[m] of a position marker at the current state."""
         return float(self._mbs.GetMarkerOutput(marker, exu.OutputVariableType.Position)[self._up])
 
+    def to_the_left(self, marker: int) -> float:
+        """[m] of a position marker from the track's centre at the current state, in space."""
+        return float(self._mbs.GetMarkerOutput(marker, exu.OutputVariableType.Position)[1])
+
     def lateral(self, contact: ContactParts) -> float:
         """[m] to the left of the middle of a strip that rolls, where the contact is on it."""
         if not contact.rolls:

@@ -14,7 +14,7 @@ from catenary_fe.engines.checkpoint import Checkpoint
 from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
 from catenary_fe.engines.exudyn.solver import solve_dynamic, solve_static
 from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_steps
-from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces
+from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import place
@@ -181,6 +181,7 @@ class _Recorder:
         self._times: Floats = np.arange(n, dtype=np.float64) * time.step
         self._forces = [np.zeros((len(parts.contacts), n)) for parts in model.pantographs]
         self._heights = [np.full((len(parts.contacts), n), np.nan) for parts in model.pantographs]
+        self._lateral = [np.full_like(own, np.nan) for own in self._forces] if system.spatial else []
         self._masses = [np.zeros((len(parts.masses), n)) for parts in model.pantographs]
         self._dropper = np.zeros((system.droppers.length.size, n))
         paths = system.contact_paths
@@ -212,6 +213,8 @@ class _Recorder:
             for j, contact in enumerate(parts.contacts):
                 if contacts.meets(contact):
                     self._heights[i][j, n] = contacts.height(contact.wire_marker) - nominal
+                    if self._lateral:
+                        self._lateral[i][j, n] = contacts.to_the_left(contact.wire_marker)
             self._masses[i][:, n] = [contacts.height(marker) - nominal for marker in parts.masses]
         self._support[:, n] = q[self._support_index]
         self._dropper[:, n] = [model.mbs.GetObjectOutput(d, _ALONG) for d in model.droppers]
@@ -273,6 +276,7 @@ class _Recorder:
             tension_span=self._tension.spans,
             tension_times=self._tension.times,
             section_force=section_forces(found),
+            contact_lateral=[where_pressed(*both) for both in zip(self._lateral, self._forces, strict=False)],
             notes=tuple(self._note(at, parts) for at, parts in self._notes.items()),
         )
 

@@ -60,7 +60,7 @@ class Line(NamedTuple):
     first : shape (contact wires + 1,), where the wires' nodes begin
     lengths : [m], shape (nodes,), of the elements that begin there
     profile, lateral : shape (nodes, 2), height and slope at rest, likewise to the left
-    at : shape (nodes, 2), coordinates of height and slope
+    at, across : shape (nodes, 2), coordinates of height and slope, and likewise to the left
     contact_compliance : columns of the inverse for these coordinates, numbered by ``column``
     rows, k, d, tension : the droppers' elongation, stiffness, damping and tension at rest
     dropper_compliance : likewise for the droppers
@@ -76,6 +76,7 @@ class Line(NamedTuple):
     profile: Floats
     lateral: Floats
     at: Integers
+    across: Integers
     column: Integers
     contact_compliance: ComplianceColumns
     rows: CsrRows

@@ -77,13 +77,14 @@ class Batch:
             shape=np.zeros((slots, j, 5)),
             rise=np.zeros((slots, j, 5)),
             at=np.zeros((slots, j, 4), dtype=np.int64),
+            node=np.zeros((slots, j), dtype=np.int64),
             on=np.zeros((slots, j), dtype=np.int64),
             base=np.zeros((slots, j)),
             head=np.zeros((slots, j, m)),
             head_compliance=np.zeros((slots, j, m)),
         )
         counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
-        self.records = make_records(slots, sizes, counts, every)
+        self.records = make_records(slots, sizes, counts, every, spatial=setup.model.spatial)
 
     def load(self, slot: int, start: InitialState, steps: int) -> None:
         """Put a run at its start into a slot."""
@@ -217,7 +218,7 @@ def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> 
     """``SLOTS`` if there are several runs and their histories fit into the memory [bytes], else 1."""
     line = setup.line
     histories = (
-        line.k.size + line.supports.size + 2 * sizes.contacts + sizes.pantographs * sizes.coordinates + 2
+        line.k.size + line.supports.size + 3 * sizes.contacts + sizes.pantographs * sizes.coordinates + 2
     )
     size = 8.0 * SLOTS * (sizes.steps * histories + sizes.shapes * line.heights.size)
     return SLOTS if runs > 1 and size <= memory else 1

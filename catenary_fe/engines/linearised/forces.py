@@ -13,6 +13,7 @@ from catenary_fe.engines.contact_solver import (
     SWEEPS,
     TOLERANCE,
     free_heads,
+    lateral_place,
     one_way,
     place_base,
     place_head,
@@ -262,6 +263,8 @@ def record(
             if i >= 0:
                 z += work.shape[c, j, m] * (wires.q[i, c] + scheme.b * wires.x[i, c])
         to.height[c, j, n] = z
+        if to.lateral.shape[2] > 0:
+            to.lateral[c, j, n] = lateral_place(scheme, line, wires, work, c, j)
     for p in range(pantographs.x.shape[1]):
         for s in range(pantographs.x.shape[2]):
             to.masses[c, p, s, n] = pantographs.q[c, p, s] + scheme.b * pantographs.x[c, p, s]

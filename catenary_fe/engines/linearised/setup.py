@@ -136,6 +136,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         profile=np.concatenate([wire.profile for wire in contacts]),
         lateral=np.concatenate([wire.lateral for wire in contacts]),
         at=at,
+        across=np.concatenate([wire.across_dof for wire in contacts]),
         column=column,
         contact_compliance=_columns(factor, units),
         rows=csr_rows(model.dropper_rows),

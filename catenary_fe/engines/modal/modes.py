@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import wire_kinds
 from catenary_fe.fe.system import System
 from catenary_fe.layout import InputError, SolverError, counted
 from catenary_fe.layout.arguments import checked, number, whole
@@ -70,20 +71,20 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
         wanted = min(int(1.3 * wanted) + 10, system.size - 1)
         pairs = solve_eigen(system, wanted)
     up = system.axes - 1
-    contact, messenger = (
+    contact, *messenger = (
         WireShapes(
             shape.wires[wire].x,
             pairs.shapes[wire][:, :, up],
             pairs.shapes[wire][:, :, -1],
             pairs.shapes[wire][:, :, 1] if up > 1 else None,
         )
-        for wire in (0, shape.mesh.contact_wires)
+        for wire in (0, *range(shape.mesh.contact_wires, shape.mesh.first_stitch))
     )
     modes = Modes(
         shape.catenary,
         pairs.frequencies,
         contact,
-        messenger,
+        messenger[0] if messenger else None,
         pairs.longitudinal,
         pairs.lateral,
         pairs.damping_ratios,
@@ -96,11 +97,9 @@ def solve_modes(shape: Shape, *, count: int | None = None, below: float | None =
 
 def mode_warnings(shape: Shape, modes: Modes) -> list[str]:
     """What to know before trusting modes: the rule and both numbers."""
-    wires = (
-        (shape.catenary.contact_wire, shape.mesh.contact.x),
-        (shape.catenary.messenger_wire, shape.mesh.messenger.x),
-    )
-    resolved = min(wire.wave_speed / (2 * float(np.diff(x).max())) for wire, x in wires)
+    wires = zip(wire_kinds(shape.catenary, shape.mesh), shape.mesh.wires, strict=True)
+    running = list(wires)[: shape.mesh.first_stitch]
+    resolved = min(wire.wave_speed / (2 * float(np.diff(mesh.x).max())) for wire, mesh in running)
     above = int((modes.frequencies > resolved).sum())
     if not above:
         return []
@@ -113,7 +112,7 @@ def mode_warnings(shape: Shape, modes: Modes) -> list[str]:
 def _expected(shape: Shape, below: float) -> int:
     """Modes of the two wires as strings with as many half-waves along the line, and some to spare."""
     wires = shape.catenary.contact_wire, shape.catenary.messenger_wire
-    strings = sum(2 * shape.catenary.length * below / wire.wave_speed for wire in wires)
+    strings = sum(2 * shape.catenary.length * below / wire.wave_speed for wire in wires if wire)
     return int(1.1 * strings) + 10
 
 

@@ -51,7 +51,7 @@ class Stations(NamedTuple):
     first : shape (contact wires + 1,), where the wires' nodes begin
     x, lengths : [m], shape (nodes,)
     profile, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
-    at : shape (nodes, 2), free coordinates of height and slope
+    at, across : shape (nodes, 2), free coordinates of height and slope, and likewise to the left
     supports : shape (contact wires * supports,), numbers of heights among all coordinates
     heights : shape (nodes of all wires,), likewise
     rest : [m], shape (nodes of all wires,), heights that uplifts count from
@@ -64,6 +64,7 @@ class Stations(NamedTuple):
     profile: Floats
     lateral: Floats
     at: Integers
+    across: Integers
     supports: Integers
     heights: Integers
     rest: Floats

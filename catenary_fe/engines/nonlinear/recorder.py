@@ -18,7 +18,7 @@ from catenary_fe.engines.tension import TensionRecord
 from catenary_fe.fe.contact import PlacedPantograph
 
 Floats = NDArray[np.float64]
-_BY_STEP = ("force", "height", "masses", "droppers", "supports")
+_BY_STEP = ("force", "height", "lateral", "masses", "droppers", "supports")
 
 
 class EnergyRecord:

@@ -123,7 +123,7 @@ class NonlinearRun:
     def _records(self, sizes: Sizes, total: Floats, every: int) -> Records:
         stations, droppers = self._parameters.stations, self._parameters.system.droppers
         counts = droppers.length.size, stations.supports.size, stations.heights.size, 0
-        records = make_records(1, sizes, counts, every)
+        records = make_records(1, sizes, counts, every, spatial=self._engine._system.spatial)
         records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
         if every:
             records.wire[0, 0] = total[stations.heights] - stations.rest

@@ -79,6 +79,7 @@ class Parameters:
             profile=np.concatenate([path.profile for path in paths]),
             lateral=np.concatenate([path.lateral for path in paths]),
             at=np.concatenate([path.dof for path in paths]),
+            across=np.concatenate([path.across_dof for path in paths]),
             supports=np.concatenate([path.index[path.supports, 0] for path in paths]),
             heights=self.system.heights,
             rest=rest,

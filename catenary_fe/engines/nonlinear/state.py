@@ -119,6 +119,7 @@ def _work(sizes: Sizes) -> Work:
         shape=np.zeros((1, j, 5)),
         rise=np.zeros((1, j, 5)),
         at=np.zeros((1, j, 4), dtype=np.int64),
+        node=np.zeros((1, j), dtype=np.int64),
         on=np.zeros((1, j), dtype=np.int64),
         base=np.zeros((1, j)),
         head=np.zeros((1, j, m)),

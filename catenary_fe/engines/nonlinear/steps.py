@@ -18,6 +18,7 @@ from catenary_fe.engines.contact_solver import (
     advance_heads,
     base_height,
     free_heads,
+    lateral_place,
     place_base,
     place_head,
     update_contact,
@@ -167,6 +168,8 @@ def _record(
                 if i >= 0:
                     z += work.shape[0, j, m] * (wires.q[i, 0] + scheme.b * wires.x[i, 0])
             to.height[0, j, n] = z
+            if to.lateral.shape[2] > 0:
+                to.lateral[0, j, n] = lateral_place(scheme, stations, wires, work, 0, j)
     for p in range(pantographs.x.shape[1]):
         for s in range(pantographs.x.shape[2]):
             to.masses[0, p, s, n] = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from catenary_fe.layout import AnyPantograph, Catenary, Wire, counted, ends_in_words
+from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted, ends_in_words
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -182,14 +182,21 @@ def _line_table(catenary: Catenary) -> Table:
         ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
         ("contact wire height", f"{_range(catenary.contact_wire_heights)} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
-        ("system height", f"{_range(catenary.messenger_support_heights - catenary.contact_wire_heights)} m"),
+        ("system height", _system_height(catenary)),
         ("steady arms", _arms(catenary)),
         ("wires along the track", ends_in_words(catenary)),
+        *((f"equipment {n}", _equipment(item)) for n, item in enumerate(catenary.equipment, start=1)),
         ("damping of wires and taut droppers", f"α = {damping.alpha:g} 1/s, β = {damping.beta:g} s"),
         ("modelled", "in space" if catenary.is_spatial else "in the vertical plane"),
         *_lateral_rows(catenary),
     ]
     return Table("Line", ("", "value"), rows)
+
+
+def _system_height(catenary: Catenary) -> str:
+    if catenary.messenger_wire is None:
+        return "no messenger wire"
+    return f"{_range(catenary.messenger_support_heights - catenary.contact_wire_heights)} m"
 
 
 def _arms(catenary: Catenary) -> str:
@@ -204,14 +211,29 @@ def _arms(catenary: Catenary) -> str:
     return "; ".join(kinds) or "none"
 
 
+def _equipment(item: Equipment) -> str:
+    """A piece with its place, what it has, and its source."""
+    parts = [item.place, f"{item.mass:g} kg"]
+    parts += [f"{item.length:g} m long"] if item.length else []
+    parts += [f"EI = {item.bending_stiffness:g} N m²"] if item.bending_stiffness else []
+    return ", ".join([*parts, item.source or "source not given"])
+
+
 def _lateral_rows(catenary: Catenary) -> list[tuple[str, str]]:
     """What leaves the vertical plane, where anything does."""
     rows = []
     if np.any(catenary.staggers):
         rows.append(("stagger", f"{_range(catenary.staggers)} m"))
-    radii = [span.curve_radius for span in catenary.spans if span.curve_radius]
-    if radii:
-        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(radii), 'span')}"))
+    curved = [span for span in catenary.spans if any(span.curvatures)]
+    if curved:
+        radii = [1 / curvature for span in curved for curvature in span.curvatures if curvature]
+        rows.append(("curve radius", f"{_range(radii)} m in {counted(len(curved), 'span')}"))
+        transitions = sum(span.curvatures[0] != span.curvatures[1] for span in curved)
+        if transitions:
+            rows.append(("transition curves", counted(transitions, "span")))
+    cants = [1e3 * support.cant for support in catenary.supports]
+    if any(cants):
+        rows.append(("cant", f"{_range(cants)} mm over {catenary.cant_base:g} m"))
     if catenary.contact_wire_spacing:
         rows.append(("contact wires", f"two, {catenary.contact_wire_spacing:g} m apart"))
     if catenary.stitch_wire:
