@@ -43,6 +43,7 @@ _file = options.output("Layout file to write.", "FILE", required=True)
     "--line", "kind", metavar="NAME", shell_complete=_line_names, help="Line of the library for that."
 )
 @click.option("--name", help="Of the line; unset: the name of the masts' file.")
+@options.spans
 @_file
 @options.as_json
 @options.quiet
@@ -52,6 +53,7 @@ def from_table(
     base: str | None,
     kind: str | None,
     name: str | None,
+    spans: list[int] | None,
     output: str,
     as_json: bool,
     quiet: bool,
@@ -73,7 +75,10 @@ def from_table(
     files = [masts, *([droppers] if droppers else [])]
     origin = ["--base", base] if base else ["--line", str(kind)]
     not_read = {path: list(headings) for path, headings in made.not_read.items()}
-    _write(made.catenary, output, ["from-table", *files, *origin], as_json, quiet, {"not_read": not_read})
+    line = made.catenary.replace(evaluated_spans=tuple(spans)) if spans else made.catenary
+    words = ["from-table", *files, *origin, *(["--name", name] if name else [])]
+    words += ["--spans", ",".join(map(str, spans))] if spans else []
+    _write(line, output, words, as_json, quiet, {"not_read": not_read})
     for path, headings in made.not_read.items():
         if not quiet:
             say("note", f"{path}: results, which are not read: {', '.join(headings)}", "cyan")
@@ -106,7 +111,8 @@ def build(
     """
     named: dict[str, Any] = {"name": name} if name else {}
     made = build_line(line, _lengths(spans), staggers=stagger, curve_radii=curve_radius, **named)
-    words = [f"--{n}={v}" for n, v in (("stagger", stagger), ("curve-radius", curve_radius)) if v is not None]
+    given = (("stagger", stagger), ("curve-radius", curve_radius), ("name", name))
+    words = [word for n, v in given if v is not None for word in (f"--{n}", str(v))]
     _write(made, output, ["build", line, "--spans", spans, *words], as_json, quiet, {})
 
 

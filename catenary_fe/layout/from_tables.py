@@ -162,14 +162,10 @@ def _check_spans(table: Table, lengths: Sequence[float]) -> None:
             if given is not None and (found is None or abs(given - found) > ROUNDED):
                 real = "there is none" if found is None else f"it is {found:g} m by the chainages"
                 faults.append(f"{table.where(i, name)}: {given:g} m: {real}")
-    radii = [row.get("curve_radius_after") for row in table.rows]
-    for i, row in enumerate(table.rows):
-        before = row.get("curve_radius_before")
-        if before and (i == 0 or before != radii[i - 1]):
-            faults.append(
-                f"{table.where(i, 'curve_radius_before')}: {before:g} m: the row before must have it as"
-                " curve_radius_after"
-            )
+    if table.rows[0].get("curve_radius_before"):
+        faults.append(
+            f"{table.where(0, 'curve_radius_before')}: no span ends at the first mast; leave it empty"
+        )
     for name in ("curve_radius_after", "pre_sag"):
         if table.rows[-1].get(name):
             faults.append(
@@ -184,7 +180,10 @@ def _with_own(table: Table, spans: Sequence[Span]) -> tuple[Span, ...]:
     found, faults = [], []
     for i, span in enumerate(spans):
         row = table.rows[i]
-        own = {"curve_radius": row.get("curve_radius_after") or None}
+        own = {"curve_radius": row.get("curve_radius_after") or None, "curve_radius_end": None}
+        if "curve_radius_before" in row:  # of a transition curve, at its end
+            end = table.rows[i + 1]["curve_radius_before"] or 0.0
+            own["curve_radius_end"] = None if end == (own["curve_radius"] or 0.0) else end
         own |= {"pre_sag": row["pre_sag"]} if row.get("pre_sag") is not None else {}
         try:
             found.append(span.replace(**own))
@@ -223,7 +222,9 @@ def _supports(table: Table, pattern: LinePattern, lengths: Sequence[float]) -> t
     found = []
     for i, row in enumerate(table.rows):
         inside = 0 < i < len(table.rows) - 1
-        own = {name: row[name] for name in ("stagger", "messenger_stagger") if row.get(name) is not None}
+        own = {
+            name: row[name] for name in ("stagger", "messenger_stagger", "cant") if row.get(name) is not None
+        }
         for name in ("contact_wire_height", "system_height"):
             if row.get(name) is not None and row[name] != getattr(pattern.line, name):
                 own[name] = row[name]

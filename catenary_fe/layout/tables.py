@@ -48,7 +48,8 @@ _WHOLE = Column("whole")
 MAST_COLUMNS = {
     "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
     "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
-    "messenger_stagger": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
+    "messenger_stagger": _LENGTH, "cant": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE,
+    "pre_sag": _LENGTH,
     "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE,
     "uplift_room": _SIZE, "arm_kind": Column("text", words=("link", "spring", "none")),
     "arm_side": Column("text", words=("left", "right")), "arm_length": _SIZE,
