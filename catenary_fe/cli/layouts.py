@@ -116,6 +116,30 @@ def build(
     _write(made, output, ["build", line, "--spans", spans, *words], as_json, quiet, {})
 
 
+@layout.command("dxf", epilog="\b\nExample:\n  catenary-fe layout dxf models/layouts/re250.toml -o line.dxf")
+@click.argument("layout", type=click.Path())
+@click.option(
+    "--exaggeration", type=click.FloatRange(0.1, 100), default=1.0, show_default=True, help="Of heights."
+)
+@options.planar
+@options.output("DXF file to write.", "FILE", required=True)
+@options.quiet
+def dxf(layout: str, exaggeration: float, planar: bool, output: str, quiet: bool) -> None:
+    """Draw the long section of a LAYOUT at rest as DXF, in metres, with wires and droppers on layers."""
+    from catenary_fe.cli.terminal import warned, working
+    from catenary_fe.statics import find_form
+    from catenary_fe.views import write_dxf
+    from catenary_fe.views.dxf import check_dxf
+
+    check_dxf()
+    catenary = options.read_layout(layout, planar)
+    with warned(layout_warnings(catenary)), working("form finding", not quiet):
+        shape = find_form(catenary)
+    path = write_dxf(shape, output, exaggeration=exaggeration)
+    if not quiet:
+        click.echo(f"long section in {path}")
+
+
 def _lengths(text: str) -> list[float]:
     """``65,2x60`` is 65, 60, 60. Raises InputError."""
     lengths: list[float] = []

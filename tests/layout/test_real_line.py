@@ -1,4 +1,4 @@
-"""The line of 1,200 m of two tables: it is what they say, it is found, and its gradient is judged by speed."""
+"""The line of 1,200 m of two tables: it is what they say, is found, and its gradient is judged by speed."""
 
 from pathlib import Path
 
