@@ -37,9 +37,9 @@ def write_dxf(shape: Shape, path: str | Path, *, exaggeration: float = 1.0) -> P
     """
     number("exaggeration", exaggeration, least=0.1, most=100.0)
     check_dxf()
-    import ezdxf
+    from ezdxf.filemanagement import new
 
-    document = ezdxf.new("R2010", units=6)  # metres
+    document = new("R2010", units=6)  # metres
     for name, colour in _LAYERS.items():
         document.layers.add(name, color=colour)
     space = document.modelspace()
@@ -62,7 +62,8 @@ def write_dxf(shape: Shape, path: str | Path, *, exaggeration: float = 1.0) -> P
         write(f"{row.dropper}: {row.cut_length_mm} mm", x + _TEXT, low)
     for mast in shape.support_schedule():
         arm = mast.arms[0]
-        draw("MASTS", [(mast.chainage_m, 0.0), (mast.chainage_m, mast.messenger_wire_height_m)])
+        top = mast.messenger_wire_height_m or arm.contact_wire_height_m
+        draw("MASTS", [(mast.chainage_m, 0.0), (mast.chainage_m, top)])
         text = f"{mast.support}: {mast.chainage_m:.3f} m, wire {arm.contact_wire_height_m:.3f} m"
         write(f"{text}, stagger {1e3 * arm.stagger_m:.0f} mm", mast.chainage_m - _TEXT, 0.2)
     content = StringIO()
