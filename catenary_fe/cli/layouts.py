@@ -43,6 +43,7 @@ _file = options.output("Layout file to write.", "FILE", required=True)
     "--line", "kind", metavar="NAME", shell_complete=_line_names, help="Line of the library for that."
 )
 @click.option("--name", help="Of the line; unset: the name of the masts' file.")
+@options.spans
 @_file
 @options.as_json
 @options.quiet
@@ -52,6 +53,7 @@ def from_table(
     base: str | None,
     kind: str | None,
     name: str | None,
+    spans: list[int] | None,
     output: str,
     as_json: bool,
     quiet: bool,
@@ -73,7 +75,10 @@ def from_table(
     files = [masts, *([droppers] if droppers else [])]
     origin = ["--base", base] if base else ["--line", str(kind)]
     not_read = {path: list(headings) for path, headings in made.not_read.items()}
-    _write(made.catenary, output, ["from-table", *files, *origin], as_json, quiet, {"not_read": not_read})
+    line = made.catenary.replace(evaluated_spans=tuple(spans)) if spans else made.catenary
+    words = ["from-table", *files, *origin, *(["--name", name] if name else [])]
+    words += ["--spans", ",".join(map(str, spans))] if spans else []
+    _write(line, output, words, as_json, quiet, {"not_read": not_read})
     for path, headings in made.not_read.items():
         if not quiet:
             say("note", f"{path}: results, which are not read: {', '.join(headings)}", "cyan")
@@ -106,8 +111,33 @@ def build(
     """
     named: dict[str, Any] = {"name": name} if name else {}
     made = build_line(line, _lengths(spans), staggers=stagger, curve_radii=curve_radius, **named)
-    words = [f"--{n}={v}" for n, v in (("stagger", stagger), ("curve-radius", curve_radius)) if v is not None]
+    given = (("stagger", stagger), ("curve-radius", curve_radius), ("name", name))
+    words = [word for n, v in given if v is not None for word in (f"--{n}", str(v))]
     _write(made, output, ["build", line, "--spans", spans, *words], as_json, quiet, {})
+
+
+@layout.command("dxf", epilog="\b\nExample:\n  catenary-fe layout dxf models/layouts/re250.toml -o line.dxf")
+@click.argument("layout", type=click.Path())
+@click.option(
+    "--exaggeration", type=click.FloatRange(0.1, 100), default=1.0, show_default=True, help="Of heights."
+)
+@options.planar
+@options.output("DXF file to write.", "FILE", required=True)
+@options.quiet
+def dxf(layout: str, exaggeration: float, planar: bool, output: str, quiet: bool) -> None:
+    """Draw the long section of a LAYOUT at rest as DXF, in metres, with wires and droppers on layers."""
+    from catenary_fe.cli.terminal import warned, working
+    from catenary_fe.statics import find_form
+    from catenary_fe.views import write_dxf
+    from catenary_fe.views.dxf import check_dxf
+
+    check_dxf()
+    catenary = options.read_layout(layout, planar)
+    with warned(layout_warnings(catenary)), working("form finding", not quiet):
+        shape = find_form(catenary)
+    path = write_dxf(shape, output, exaggeration=exaggeration)
+    if not quiet:
+        click.echo(f"long section in {path}")
 
 
 def _lengths(text: str) -> list[float]:

@@ -265,10 +265,11 @@ class LinePattern:
         sections = base.sections if isinstance(base, SectionedLine) else (base,)
         wires = [(s.contact_wire, s.messenger_wire, s.stitch_wire, s.system_height) for s in sections]
         _one(base, "sections", wires)
-        bare = {"stagger": 0.0, "messenger_stagger": 0.0, "contact_wire_height": None, "system_height": None}
+        bare = {"stagger": 0.0, "cant": 0.0, "contact_wire_height": None, "system_height": None}
         bare |= {"stitch_wire": True, "stitch_wire_length": None}
         inner = [s for section in sections for s in section.supports[1:-1] or section.supports]
-        support = _one(base, "supports", [s.replace(**bare) for s in inner])
+        plumb = {s: {"messenger_stagger": 0.0} for s in inner if not isinstance(s.messenger_stagger, str)}
+        support = _one(base, "supports", [s.replace(**bare, **plumb.get(s, {})) for s in inner])
         plain = {"position": 0.0, "length": None, "height_offset": None, "contact_wire": None}
         dropper = _one(base, "droppers", [d.replace(**plain) for d in base.droppers] or [Dropper(position=0)])
         sag = _one(base, "pre-sags", [round(span.pre_sag / span.length, 9) for span in base.spans])
@@ -286,7 +287,7 @@ class LinePattern:
                 + "; give a table of droppers"
             )
         droppers = tuple(d.replace(length=None) for d in alike[0].droppers)
-        return alike[0].replace(length=length, droppers=droppers, curve_radius=None)
+        return alike[0].replace(length=length, droppers=droppers, curve_radius=None, curve_radius_end=None)
 
 
 def _one(base: Catenary, what: str, parts: Sequence[Any]) -> Any:

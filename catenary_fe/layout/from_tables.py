@@ -15,35 +15,15 @@ from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support
-from catenary_fe.layout.tables import ROUNDED, Column, Table, by_section, one_wire, read_table
-
-_LENGTH, _SIZE, _RESULT = Column("length"), Column("length", least=0.0), Column("result")
-_WHOLE = Column("whole")
-MAST_COLUMNS = {
-    "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
-    "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
-    "messenger_stagger": _LENGTH, "cant": _LENGTH,
-    "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
-    "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE,
-    "uplift_room": _SIZE,
-    "arm_kind": Column("text", words=("link", "spring", "none")),
-    "arm_side": Column("text", words=("left", "right")), "arm_length": _SIZE,
-    "arm_stiffness": Column("stiffness", least=0.0),
-} | dict.fromkeys(
-    ("arm_inclination", "arm_vertical", "arm_lateral", "arm_radial", "messenger_wire_height",
-     "messenger_vertical", "messenger_lateral", "contact_wire_tension", "messenger_wire_tension",
-     "stitch_wire_tension"), _RESULT
-)  # fmt: skip
-"""Columns of a mast table. ``curve_radius_after``, ``pre_sag``: of the span that begins at the mast; of a
-transition curve ``curve_radius_before`` of the next mast differs."""
-DROPPER_COLUMNS = {
-    "section": _WHOLE, "span": _WHOLE, "from_support": _WHOLE, "to_support": _WHOLE, "dropper": _WHOLE,
-    "chainage": _LENGTH, "position": _SIZE, "length": _SIZE, "cut_length": _SIZE, "height_offset": _LENGTH,
-    "contact_wire": _WHOLE, "hangs_on": Column("text", words=("messenger wire", "stitch wire")),
-} | dict.fromkeys(
-    ("installed_length", "force", "contact_wire_height", "contact_wire_height_error"), _RESULT
-)  # fmt: skip
-"""Columns of a dropper table: a chainage or a position, which counts from the span's first support."""
+from catenary_fe.layout.tables import (
+    DROPPER_COLUMNS,
+    MAST_COLUMNS,
+    ROUNDED,
+    Table,
+    by_section,
+    one_wire,
+    read_table,
+)
 
 
 @dataclass(frozen=True)
@@ -182,14 +162,10 @@ def _check_spans(table: Table, lengths: Sequence[float]) -> None:
             if given is not None and (found is None or abs(given - found) > ROUNDED):
                 real = "there is none" if found is None else f"it is {found:g} m by the chainages"
                 faults.append(f"{table.where(i, name)}: {given:g} m: {real}")
-    radii = [row.get("curve_radius_after") for row in table.rows]
-    for i, row in enumerate(table.rows):
-        before = row.get("curve_radius_before")
-        if before and (i == 0 or radii[i - 1] is None):
-            faults.append(
-                f"{table.where(i, 'curve_radius_before')}: {before:g} m: the row before must have it as"
-                " curve_radius_after, or of a transition curve another one, 0 where that begins straight"
-            )
+    if table.rows[0].get("curve_radius_before"):
+        faults.append(
+            f"{table.where(0, 'curve_radius_before')}: no span ends at the first mast; leave it empty"
+        )
     for name in ("curve_radius_after", "pre_sag"):
         if table.rows[-1].get(name):
             faults.append(
@@ -204,9 +180,10 @@ def _with_own(table: Table, spans: Sequence[Span]) -> tuple[Span, ...]:
     found, faults = [], []
     for i, span in enumerate(spans):
         row = table.rows[i]
-        begin, end = row.get("curve_radius_after"), table.rows[i + 1].get("curve_radius_before")
-        own: dict[str, Any] = {"curve_radius": begin or None, "curve_radius_end": None}
-        own |= {"curve_radius_end": end} if end is not None and end != (begin or 0.0) else {}
+        own = {"curve_radius": row.get("curve_radius_after") or None, "curve_radius_end": None}
+        if "curve_radius_before" in row:  # of a transition curve, at its end
+            end = table.rows[i + 1]["curve_radius_before"] or 0.0
+            own["curve_radius_end"] = None if end == (own["curve_radius"] or 0.0) else end
         own |= {"pre_sag": row["pre_sag"]} if row.get("pre_sag") is not None else {}
         try:
             found.append(span.replace(**own))
@@ -245,7 +222,9 @@ def _supports(table: Table, pattern: LinePattern, lengths: Sequence[float]) -> t
     found = []
     for i, row in enumerate(table.rows):
         inside = 0 < i < len(table.rows) - 1
-        own = {n: row[n] for n in ("stagger", "messenger_stagger", "cant") if row.get(n) is not None}
+        own = {
+            name: row[name] for name in ("stagger", "messenger_stagger", "cant") if row.get(name) is not None
+        }
         for name in ("contact_wire_height", "system_height"):
             if row.get(name) is not None and row[name] != getattr(pattern.line, name):
                 own[name] = row[name]

@@ -43,6 +43,33 @@ class Column:
     words: tuple[str, ...] = ()
 
 
+_LENGTH, _SIZE, _RESULT = Column("length"), Column("length", least=0.0), Column("result")
+_WHOLE = Column("whole")
+MAST_COLUMNS = {
+    "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
+    "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
+    "messenger_stagger": _LENGTH, "cant": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE,
+    "pre_sag": _LENGTH,
+    "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE,
+    "uplift_room": _SIZE, "arm_kind": Column("text", words=("link", "spring", "none")),
+    "arm_side": Column("text", words=("left", "right")), "arm_length": _SIZE,
+    "arm_stiffness": Column("stiffness", least=0.0),
+} | dict.fromkeys(
+    ("arm_inclination", "arm_vertical", "arm_lateral", "arm_radial", "messenger_wire_height",
+     "messenger_vertical", "messenger_lateral", "contact_wire_tension", "messenger_wire_tension",
+     "stitch_wire_tension"), _RESULT
+)  # fmt: skip
+"""Columns of a mast table. ``curve_radius_after``, ``pre_sag``: of the span that begins at the mast."""
+DROPPER_COLUMNS = {
+    "section": _WHOLE, "span": _WHOLE, "from_support": _WHOLE, "to_support": _WHOLE, "dropper": _WHOLE,
+    "chainage": _LENGTH, "position": _SIZE, "length": _SIZE, "cut_length": _SIZE, "height_offset": _LENGTH,
+    "contact_wire": _WHOLE, "hangs_on": Column("text", words=("messenger wire", "stitch wire")),
+} | dict.fromkeys(
+    ("installed_length", "force", "contact_wire_height", "contact_wire_height_error"), _RESULT
+)  # fmt: skip
+"""Columns of a dropper table: a chainage or a position, which counts from the span's first support."""
+
+
 @dataclass(frozen=True)
 class Table:
     """A table as it was read.

@@ -7,6 +7,7 @@ from catenary_fe.views.comparison import (
     plot_sweep_uplift,
     plot_uplift_comparison,
 )
+from catenary_fe.views.dxf import write_dxf
 from catenary_fe.views.film import film
 from catenary_fe.views.layout import plot_layout, plot_plan
 from catenary_fe.views.run import (
@@ -29,5 +30,5 @@ __all__ = [
     "plot_layout",
     "plot_mode", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum", "plot_static_shape",
     "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
-    "plot_sweep_uplift", "plot_uplift_comparison",
+    "plot_sweep_uplift", "plot_uplift_comparison", "write_dxf",
 ]  # fmt: skip

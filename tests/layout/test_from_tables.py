@@ -217,3 +217,20 @@ def test_several_sections_share_the_masts_of_their_overlap(tmp_path):
     droppers.write_text("section,span,position_m\n1,1,20\n", "utf-8")
     with pytest.raises(cf.InputError, match="droppers of sections 1, masts of 1, 2: give both"):
         cf.catenary_from_tables(masts, droppers, base="Re 250")
+
+
+def test_transition_curves_cant_and_a_messenger_wire_that_follows(tmp_path):
+    masts = tmp_path / "masts.csv"
+    masts.write_text(
+        "chainage_m,stagger_mm,curve_radius_before_m,curve_radius_after_m,cant_mm\n"
+        "0,-200,,,0\n60,-200,1500,1500,100\n120,-200,1500,1500,100\n180,-200,0,,0\n",
+        "utf-8",
+    )
+    base = cf.build_line("Re 250", [60.0] * 3)
+    base = base.replace(supports=[s.replace(messenger_stagger="follows") for s in base.supports])
+    line = cf.catenary_from_tables(masts, base=base)
+    radii = [(span.curve_radius, span.curve_radius_end) for span in line.spans]
+    assert radii == [(None, 1500), (1500, None), (1500, 0)]
+    assert [s.cant for s in line.supports] == [0, 0.1, 0.1, 0]
+    assert {s.messenger_stagger for s in line.supports} == {"follows"}
+    assert cf.load_catenary(cf.save_catenary(line, tmp_path / "line.toml")) == line
