@@ -90,6 +90,17 @@ def changes_in_words(catenary: Catenary) -> str:
     )
 
 
+def worn_mass(catenary: Catenary) -> float:
+    """[kg] that has worn off the contact wires."""
+    lost = 0.0
+    for part in getattr(catenary, "sections", ()) or (catenary,):
+        for wear in part.wear:
+            begin, end = wear.ends(part)
+            wires = len(part.contact_wire_offsets) if wear.contact_wire is None else 1
+            lost += wires * (1 - wear.area_left) * (end - begin) * part.contact_wire.mass_per_length
+    return lost
+
+
 def designed_spans(catenary: Catenary) -> tuple[Any, ...]:
     """The spans with all droppers in place, and each clamp where it was put."""
     as_put: dict[str, Any] = {"state": None, "clamp_shift": 0.0}

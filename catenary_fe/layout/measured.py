@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 
 LONGEST_GAP = 2.0  # [m] between rows, over which heights run straight: 0.1 mm beside a wire's curvature
 NEAR = 0.25  # [m] from a row whose height is taken as it is: a millimetre at a gradient of 1 in 250
+LOWEST, HIGHEST = 2.0, 10.0  # [m] of any contact wire, by a wide margin
+_RANGE = f"contact wires lie {LOWEST:g} to {HIGHEST:g} m above the rail"
 _COLUMNS = {
     "x": Column("length"),
     "height": Column("length", least=0.0),
@@ -56,12 +58,10 @@ class MeasuredWire:
                     raise InputError(f"{self.origin}: {name}: must be as many finite numbers as x has")
         if not self.x.size or (np.diff(self.x) <= 0).any():
             raise InputError(f"{self.origin}: x must ascend, with at least one row; sort the rows")
-        if not ((self.height > 2) & (self.height < 10)).all():
-            bad = int(np.argmax(~((self.height > 2) & (self.height < 10))))
-            raise InputError(
-                f"{self.origin}: height = {self.height[bad]:g} m at x = {self.x[bad]:g} m: contact wires lie 2 to"
-                " 10 m above the rail; look at the unit"
-            )
+        odd = ~((self.height > LOWEST) & (self.height < HIGHEST))
+        if odd.any():
+            z, x = self.height[odd][0], self.x[odd][0]
+            raise InputError(f"{self.origin}: height = {z:g} m at x = {x:g} m: {_RANGE}; look at the unit")
 
     def at(self, name: str, x: float, where: str) -> float:
         """A value [m], "height" or "stagger", at a place: straight between rows that are close.
@@ -102,11 +102,19 @@ def read_measured(path: str | Path) -> MeasuredWire:
         if row[name] is None
     ]
     if not faults:
-        faults = _descents(table)
+        faults = [*_odd_heights(table), *_descents(table)]
     if faults:
         raise InputError(*faults)
     columns: dict[str, Any] = {n: np.array([row[n] for row in table.rows]) for n in table.headings}
     return MeasuredWire(**columns, origin=str(table.path))
+
+
+def _odd_heights(table: Table) -> list[str]:
+    return [
+        f"{table.where(i, 'height')}: height = {row['height']:g} m: {_RANGE}; look at the unit"
+        for i, row in enumerate(table.rows)
+        if not LOWEST < row["height"] < HIGHEST
+    ]
 
 
 def _descents(table: Table) -> list[str]:
@@ -165,7 +173,7 @@ def _system_height(catenary: Catenary, support: int, height: float, where: str) 
             f"{where}: the measured height of {height:g} m lies above the messenger wire at"
             f" {left + height:g} m; look at the unit, or at the system height"
         )
-    return left
+    return round(left, 9)
 
 
 def with_design_heights_of(goal: Catenary, catenary: Catenary) -> Catenary:

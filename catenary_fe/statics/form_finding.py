@@ -211,6 +211,9 @@ class WireSubstructures:
 
         A Newton step on the stored energy, which is convex: shortened where it would raise it.
         """
+        if self.masts:
+            self.masts = self.masts.turned(self.found, self.reactions)
+            self.__dict__.pop("_arm_springs", None)
         force = np.zeros_like(self.found)
         if self.axes == 3:
             force[0] = self._lateral_loads()
