@@ -44,10 +44,10 @@ if TYPE_CHECKING:
         catenary_from_tables,
         join_sections,
         layout_warnings,
-        read_measured,
         library,
         load_catenary,
         load_pantograph,
+        read_measured,
         target_mean_force,
     )
     from catenary_fe.results import (

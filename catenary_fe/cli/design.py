@@ -160,8 +160,8 @@ def form(
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height. A line that hangs otherwise than its design, with lengths
-    of its own, droppers missing or a worn wire, is shown beside the design. With measured heights, layout.toml
-    in the folder is the line that has them.
+    of its own, droppers missing or a worn wire, is shown beside the design. With measured heights, the
+    folder's layout.toml is the line that has them.
     """
     if xlsx:
         if answer.folder is None:

@@ -53,6 +53,8 @@ def installed_rows(shape: Shape, design: Shape | None) -> list[dict[str, Any]]:
 
 def print_installed(name: str, rows: list[dict[str, Any]]) -> None:
     """Print the comparison's main columns."""
-    columns = [key for key in _COLUMNS if key in rows[0] and (key != "state" or any(row[key] for row in rows))]
+    columns = [
+        key for key in _COLUMNS if key in rows[0] and (key != "state" or any(row[key] for row in rows))
+    ]
     table = [[cell(row[key], decimals_of(key)) for key in columns] for row in rows]
     print_table(f"{name}: the line as it is, above its design", [_COLUMNS[key] for key in columns], table)

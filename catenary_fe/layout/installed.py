@@ -1,4 +1,4 @@
-"""What has changed on a line since its droppers were cut: droppers gone, clamps slid, the contact wire worn."""
+"""What has changed on a line since its droppers were cut: droppers gone, clamps slid, contact wire worn."""
 
 from __future__ import annotations
 

@@ -81,8 +81,9 @@ class MeasuredWire:
         if abs(self.x[nearest] - x) <= NEAR:
             return float(values[nearest])
         raise InputError(
-            f"{self.origin}: no height at {where}, x = {x:.2f} m: the nearest row is at {self.x[nearest]:.2f} m;"
-            f" measure within {NEAR:g} m of it, or on both sides at most {LONGEST_GAP:g} m apart"
+            f"{self.origin}: no height at {where}, x = {x:.2f} m: the nearest row is at"
+            f" {self.x[nearest]:.2f} m; measure within {NEAR:g} m of it, or on both sides"
+            f" at most {LONGEST_GAP:g} m apart"
         )
 
 
@@ -90,7 +91,7 @@ class MeasuredWire:
 def read_measured(path: str | Path) -> MeasuredWire:
     """Measured heights from a table (CSV) with columns ``x``, ``height`` and perhaps ``stagger``, with units.
 
-    ``x_m``, ``height [mm]``: from the line's first support, above the rail, to the left of the track's centre.
+    ``x_m``, ``height [mm]``: from the line's first support, above the rail, to the left of the track.
 
     Raises InputError, one line for each fault with row and column.
     """
@@ -119,8 +120,8 @@ def _odd_heights(table: Table) -> list[str]:
 
 def _descents(table: Table) -> list[str]:
     return [
-        f"{table.where(i, 'x')}: x = {row['x']:g} m does not lie behind the row before, {before['x']:g} m; sort"
-        " the rows, each place once"
+        f"{table.where(i, 'x')}: x = {row['x']:g} m does not lie behind the row before, {before['x']:g} m;"
+        " sort the rows, each place once"
         for i, (before, row) in enumerate(zip(table.rows, table.rows[1:], strict=False), start=1)
         if row["x"] <= before["x"]
     ]
@@ -132,16 +133,16 @@ def set_to_measured(catenary: Catenary, measured: MeasuredWire) -> Catenary:
     Supports whose steady arm holds the height, and anchors, get the measured height; the messenger wire stays
     where its supports are. Droppers have no lengths: form finding gives those that bring the wire there.
 
-    Raises InputError for lines of several sections, lines that have changed since their droppers were cut, and
-    places that were not measured.
+    Raises InputError for lines of several sections, lines that have changed since their droppers were cut,
+    and places that were not measured.
     """
     if getattr(catenary, "sections", ()):
         raise InputError(f"{measured.origin}: {catenary.name} has several sections; take one after the other")
     if catenary.departs_from_design:
         raise InputError(
-            f"{measured.origin}: the layout says what has changed ({changes_in_words(catenary)}), and measured"
-            " heights are of the line as it is: leave out missing droppers, put clamps where they are, give"
-            " contact_wire the worn wire's values"
+            f"{measured.origin}: the layout says what has changed ({changes_in_words(catenary)}), and"
+            " measured heights are of the line as it is: leave out missing droppers, put clamps where they"
+            " are, give contact_wire the worn wire's values"
         )
     supports = []
     last = len(catenary.supports) - 1

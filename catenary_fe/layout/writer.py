@@ -96,7 +96,13 @@ def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap)
 
 
 _MADE = {"supports", "stagger", "curve_radius"}
-_BLOCKS = {"supports", "span", "further_sections", "equipment", "wear"}  # lists that are written as [[tables]]
+_BLOCKS = {
+    "supports",
+    "span",
+    "further_sections",
+    "equipment",
+    "wear",
+}  # lists that are written as [[tables]]
 
 
 @dataclass(frozen=True)

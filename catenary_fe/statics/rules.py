@@ -90,10 +90,10 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
 
 
 def check_reach(catenary: Catenary, lengths: Floats) -> None:
-    """Raises InputError for clamps that slid further than droppers of lengths [m], shape (droppers,), reach."""
+    """Raises InputError for clamps that slid further than droppers of lengths [m] reach."""
     _report(
-        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches; it"
-        " slides until the dropper is taut"
+        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches;"
+        " it slides until the dropper is taut"
         for name, dropper, length in zip(dropper_names(catenary), catenary.droppers, lengths, strict=True)
         if abs(dropper.clamp_shift) >= length
     )
@@ -109,9 +109,9 @@ def check_bridged(catenary: Catenary, lengths: Floats, errors: Floats) -> None:
         count, side = int((np.abs(errors) > MOST_OFF).sum()), "above" if errors[worst] > 0 else "below"
         raise InputError(
             f"{dropper_names(catenary)[worst]}: with a length of {lengths[worst]:g} m the contact wire hangs"
-            f" {1e3 * abs(errors[worst]):.0f} mm {side} its design height ({counted(count, 'dropper')} more than"
-            f" {1e3 * MOST_OFF:g} mm off): no such line is built; look at the unit, the lengths beside, and"
-            " system_height"
+            f" {1e3 * abs(errors[worst]):.0f} mm {side} its design height ({counted(count, 'dropper')} more"
+            f" than {1e3 * MOST_OFF:g} mm off): no such line is built; look at its unit, the lengths beside,"
+            " and system_height"
         )
 
 

@@ -156,12 +156,14 @@ class Shape:
         if not given and not changes:
             return "hung with the dropper lengths of its design"
         errors = 1e3 * self.height_errors if self.height_errors.size else np.zeros(1)
-        lengths = f"{self.dropper_lengths.size} dropper lengths that the layout gives" if given else (
-            "dropper lengths of its design"
+        lengths = (
+            f"{self.dropper_lengths.size} dropper lengths that the layout gives"
+            if given
+            else ("dropper lengths of its design")
         )
         return (
-            f"hung with the {lengths}{f', {changes}' if changes else ''}: at the droppers the contact wire lies"
-            f" {errors.min():+.1f} to {errors.max():+.1f} mm from its design height"
+            f"hung with the {lengths}{f', {changes}' if changes else ''}: at the droppers the contact wire"
+            f" lies {errors.min():+.1f} to {errors.max():+.1f} mm from its design height"
         )
 
     def contact_wire_height(self, x: ArrayLike) -> Floats:

@@ -77,7 +77,9 @@ def _draw_droppers(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], u
     catenary = part.catenary
     shown = np.flatnonzero(part.inside(catenary.dropper_positions))
     x, low = catenary.dropper_positions[shown], catenary.lower_clamp_positions[shown]
-    below = [lines[catenary.dropper_contact_wires[i]].height(catenary.lower_clamp_positions[i]) for i in shown]
+    below = [
+        lines[catenary.dropper_contact_wires[i]].height(catenary.lower_clamp_positions[i]) for i in shown
+    ]
     above = [lines[upper[i]].height(catenary.dropper_positions[i]) for i in shown]
     width = 0.9 if part.is_close else 0.6
     slid = np.flatnonzero(low != x)

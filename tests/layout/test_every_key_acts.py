@@ -241,8 +241,7 @@ def base_of(place: str) -> str:
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return (
             ELSEWHERE.get(last, "plane")
-            if owner != "wear"
-            and last in ("contact_wire", "curve_radius", "curve_radius_end")
+            if owner != "wear" and last in ("contact_wire", "curve_radius", "curve_radius_end")
             else of_owner
         )
     return ELSEWHERE.get(last, "plane")
@@ -268,7 +267,9 @@ def test_a_key_of_one_support_or_dropper_reaches_it(place):
         assert line == before  # an entry with nothing in it
         return
     parts = (
-        (line.supports, before.supports) if place.startswith("supports") else (droppers(line), droppers(before))
+        (line.supports, before.supports)
+        if place.startswith("supports")
+        else (droppers(line), droppers(before))
     )
     changed = [a for a, b in zip(*parts, strict=True) if a != b]
     found = changed[0].steady_arm if "steady_arm" in place else changed[0]

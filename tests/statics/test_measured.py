@@ -105,7 +105,10 @@ WRONG = {
     "no height": ("x_m;stagger_m\n0;0.2\n", "row 1: column height_m is missing"),
     "an empty cell": ("x_m;height_m\n0;5.3\n5;\n", "row 3, column height_m: is empty"),
     "backwards": ("x_m;height_m\n5;5.3\n0;5.3\n", "row 3, column x_m: x = 0 m does not lie behind"),
-    "millimetres as metres": ("x_m;height_m\n0;5300\n", "row 2, column height_m: height = 5300 m: contact wires"),
+    "millimetres as metres": (
+        "x_m;height_m\n0;5300\n",
+        "row 2, column height_m: height = 5300 m: contact wires",
+    ),
     "an unknown column": ("x_m;height_m;wear_mm\n0;5.3;1\n", "row 1, column 3 .*: no column that is known"),
 }
 
@@ -125,9 +128,11 @@ def test_places_between_rows(layout):
     assert fine.at("height", 0.25, "there") == pytest.approx(5.3025)
     assert fine.at("height", 5.2, "there") == 5.29
     assert fine.at("height", 2.2, "there") == 5.3
-    with pytest.raises(cf.InputError, match=r"no height at there, x = 3.50 m: the nearest row is at (2|5).00 m"):
+    with pytest.raises(
+        cf.InputError, match=r"no height at there, x = 3.50 m: the nearest row is at (2|5).00 m"
+    ):
         fine.at("height", 3.5, "there")
-    with pytest.raises(cf.InputError, match="no height at support 2, x = 50.00 m"):
+    with pytest.raises(cf.InputError, match=r"no height at support 2, x = 50\.00 m"):
         cf.fit_measured(cf.load_catenary(layout), fine)
 
 
@@ -135,7 +140,9 @@ def test_what_does_not_go_with_it(layout):
     line = cf.load_catenary(layout)
     x = np.sort(np.concatenate([line.support_positions, line.dropper_positions]))
     measured = cf.MeasuredWire(x, np.full(x.size, 5.3))
-    with pytest.raises(cf.InputError, match="the layout says what has changed .1 range of worn contact wire"):
+    with pytest.raises(cf.InputError, match=r"the layout says what has changed \(1 range of worn"):
         cf.fit_measured(line.replace(wear=[cf.Wear(span=1, area_left=0.9)]), measured)
-    with pytest.raises(cf.InputError, match="support 1: the measured height of 7 m lies above the messenger wire"):
+    with pytest.raises(
+        cf.InputError, match="support 1: the measured height of 7 m lies above the messenger wire"
+    ):
         cf.fit_measured(line, cf.MeasuredWire(x, np.full(x.size, 7.0)))
