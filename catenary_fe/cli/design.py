@@ -16,6 +16,7 @@ from catenary_fe.layout import Catenary, ends_in_words, load_catenary
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.installed import changes_in_words, worn_mass
 from catenary_fe.layout.rules import check_lengths, layout_warnings
+from catenary_fe.layout.terminations import slowest_contact_wire
 from catenary_fe.results.export import cell, check_xlsx, common_name, save_catenary
 from catenary_fe.results.quantities import decimals_of
 
@@ -114,7 +115,7 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "system_height_m": catenary.system_height if catenary.messenger_wire else None,
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
-        "largest_speed_by_wave_speed_kmh": 3.6 * WAVE_SPEED_SHARE * catenary.contact_wire.wave_speed,
+        "largest_speed_by_wave_speed_kmh": 3.6 * WAVE_SPEED_SHARE * slowest_contact_wire(catenary).wave_speed,
         "changed_since_droppers_were_cut": changes_in_words(catenary) or "nothing",
         "mass_of_wires_kg": line * catenary.length - worn_mass(catenary),
         "mass_of_clamps_kg": clamps,

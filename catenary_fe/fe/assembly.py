@@ -16,6 +16,7 @@ from catenary_fe.fe.installation import (
     curve_pulls,
     dropper_damping,
     element_pulls,
+    element_shares,
     element_values,
     point_masses,
     wire_field,
@@ -27,6 +28,7 @@ from catenary_fe.fe.system import System, WireNodes
 from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary
 from catenary_fe.layout.equipment import stations
+from catenary_fe.layout.terminations import midpoint_place
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -158,7 +160,7 @@ class _Restraints:
         catenary, mesh = self.catenary, self.mesh
         for number, kind in enumerate(wire_kinds(catenary, mesh)[: mesh.first_stitch]):
             wire, name = mesh.wires[number], wire_field(mesh, number)
-            pulls = kind.tension * catenary.tension_shares(name)
+            pulls = kind.tension * element_shares(catenary, mesh, number)
             for node, end, pull in (
                 (0, catenary.begin.of(name), -pulls[0]),
                 (wire.x.size - 1, catenary.end.of(name), pulls[-1]),
@@ -168,10 +170,11 @@ class _Restraints:
                     self.fixed[at] = True
                 else:
                     self._spring(at, end.stiffness or 0.0, 0.0, float(pull))
-            inner = [self.at(number, int(node), 0) for node in wire.supports[1:-1]]
+            inner = [self.at(number, node, 0) for node in range(1, wire.x.size - 1)]
             self.force[inner] -= np.diff(pulls)
-            if catenary.midpoint:
-                self.fixed[self.at(number, int(wire.supports[catenary.midpoint - 1]), 0)] = True
+            anchor = midpoint_place(catenary, name)
+            if anchor is not None:
+                self.fixed[self.at(number, int(np.abs(wire.x - anchor).argmin()), 0)] = True
 
     def _stitch_wires(self) -> None:
         mesh = self.mesh

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from catenary_fe.fe.equipment import add_to_elements, lumped, wear_elements
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary, Wire
+from catenary_fe.layout.terminations import WireField, tension_shares
 from catenary_fe.layout.track import curvatures, lean
 
 Floats = NDArray[np.float64]
@@ -137,26 +137,26 @@ def element_values(catenary: Catenary, mesh: Mesh, name: str) -> Floats:
 
 
 def element_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """[N], for each wire shape (elements,): nominal pull along the track.
+    """[N], for each wire shape (elements,): pull along the track as installed.
 
     Between a stitch wire's clamps the two wires share the messenger wire's tension.
     """
     pulls = [
-        np.full(wire.x.size - 1, kind.tension)
-        for wire, kind in zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)
+        kind.tension * element_shares(catenary, mesh, number)
+        for number, kind in enumerate(wire_kinds(catenary, mesh))
     ]
-    for pull, wire, shares in zip(pulls, mesh.wires, _tension_shares(catenary, mesh), strict=False):
-        pull *= np.repeat(shares, np.diff(wire.supports))
     for a, b in mesh.stitch_ends:
         assert catenary.stitch_wire is not None
         pulls[mesh.contact_wires][a:b] -= catenary.stitch_wire.tension
     return pulls
 
 
-def _tension_shares(catenary: Catenary, mesh: Mesh) -> list[Floats]:
-    """Shape (spans,), for each contact and messenger wire, see :meth:`Catenary.tension_shares`."""
-    contact = catenary.tension_shares("contact_wire")
-    return [contact] * mesh.contact_wires + [catenary.tension_shares("messenger_wire")]
+def element_shares(catenary: Catenary, mesh: Mesh, number: int) -> Floats:
+    """Shape (elements,): what friction leaves of a wire's nominal tension; the wire by its number."""
+    x = mesh.wires[number].x
+    if number >= mesh.first_stitch:
+        return np.ones(x.size - 1)
+    return tension_shares(catenary, wire_field(mesh, number), (x[:-1] + x[1:]) / 2)
 
 
 def curve_pulls(catenary: Catenary, mesh: Mesh) -> list[Floats]:
@@ -217,6 +217,6 @@ def _weights(catenary: Catenary, mesh: Mesh) -> list[tuple[int, float]]:
     return found
 
 
-def wire_field(mesh: Mesh, number: int) -> Literal["contact_wire", "messenger_wire"]:
+def wire_field(mesh: Mesh, number: int) -> WireField:
     """What a wire, no stitch wire, is called in a layout."""
     return "contact_wire" if number < mesh.contact_wires else "messenger_wire"

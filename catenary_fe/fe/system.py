@@ -336,7 +336,7 @@ class System:
         inside = (x >= begin) & (x <= end)
         kept = inside[self.first] & inside[self._last]
         return replace(
-            self._with_elements(kept),
+            self.only(kept),
             droppers=self.droppers.only(inside[self.droppers.first]),
             arms=self.arms.only(inside[self.arms.first]),
         )
@@ -345,19 +345,29 @@ class System:
         """The same coordinates with the elements alone that begin before a cut [m] and end behind it."""
         none = np.zeros(x.size, dtype=bool)
         return replace(
-            self._with_elements((x[self.first] <= cut) & (x[self._last] > cut)),
+            self.only((x[self.first] <= cut) & (x[self._last] > cut)),
             droppers=self.droppers.only(none[self.droppers.first]),
             arms=self.arms.only(none[self.arms.first]),
             ground_stiffness=np.zeros(x.size),
             linear_stiffness=0 * self.linear_stiffness,
         )
 
+    def holds(self, wire: int) -> Floats:
+        """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track."""
+        mine, found = self.wires[wire], []
+        for other in self.wires:
+            if (other.section, other.contact) == (mine.section, mine.contact):
+                along = 2 * self.axes * (other.first + np.arange(other.x.size))
+                found.append(other.x[(self.dof[along] == FIXED) | (self.ground_stiffness[along] > 0)])
+        return np.concatenate(found)
+
     @property
     def _last(self) -> Integers:
         """Shape (elements,): the last coordinate of each element."""
         return self.first + 4 * self.axes - 1
 
-    def _with_elements(self, kept: NDArray[np.bool_]) -> System:
+    def only(self, kept: NDArray[np.bool_]) -> System:
+        """The same coordinates with some of the elements, shape (elements,)."""
         cables = Cables(*(values[kept] for values in vars(self.cables).values()))
         return replace(
             self,

@@ -9,7 +9,7 @@ from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted,
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Line, Overlap, ends_in_words, join_sections, read_catenary
+from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
 from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
@@ -34,6 +34,7 @@ from catenary_fe.layout.parts import (
     Wire,
 )
 from catenary_fe.layout.rules import layout_warnings
+from catenary_fe.layout.terminations import ends_in_words
 from catenary_fe.layout.writer import layout_text
 
 __all__ = [

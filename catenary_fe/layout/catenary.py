@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property, wraps
 from math import tan
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,7 @@ from catenary_fe.layout.parameters import (
     GRAVITY,
     NonEmpty,
     NonNegative,
+    Number,
     Parameters,
     Positive,
     Text,
@@ -26,9 +27,8 @@ from catenary_fe.layout.parameters import (
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
-from catenary_fe.layout.track import messenger_staggers, support_bends
-
-Loss = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, lt=0.1)]
+from catenary_fe.layout.terminations import Loss, lateral_pulls
+from catenary_fe.layout.track import messenger_staggers
 
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
@@ -95,6 +95,8 @@ class Catenary(Parameters):
     """what holds the wires along the track at the last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    midpoint_position: Number | None = None
+    """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
@@ -357,22 +359,7 @@ class Catenary(Parameters):
 
         Tension times the change of direction of all contact wires, a polygon; 0 at the line's ends.
         """
-        return self.contact_wire.tension * len(self.contact_wire_offsets) * support_bends(self)
-
-    def tension_shares(self, wire: Literal["contact_wire", "messenger_wire"]) -> NDArray[np.float64]:
-        """Shape (spans,): share of its nominal tension that a wire has in each span.
-
-        Friction takes some in a device at an end, and at each support from there to where the wire is held:
-        T_i = T η (1 − loss)^i behind i supports.
-        """
-        n, keeps = len(self.spans), 1 - self.tension_loss
-        ends = self.begin.of(wire), self.end.of(wire)
-        tensioned = [end.kind != "fixed" for end in ends]
-        held = self.midpoint - 1 if self.midpoint else 0 if tensioned[1] else n
-        span = np.arange(n)
-        before, behind = ends[0].efficiency * keeps**span, ends[1].efficiency * keeps ** (n - 1 - span)
-        shares: NDArray[np.float64] = np.where(span < held, before, behind)
-        return shares if any(tensioned) else np.ones(n)
+        return lateral_pulls(self)
 
     def planar(self) -> Self:
         """The same line in the vertical plane: no stagger, curves and cant, links as springs.
@@ -429,6 +416,9 @@ class Catenary(Parameters):
             begin=self.end,
             end=self.begin,
             midpoint=self.midpoint and n + 2 - self.midpoint,
+            midpoint_position=None
+            if self.midpoint_position is None
+            else self.length - self.midpoint_position,
             equipment=tuple(item.mirrored(self) for item in self.equipment),
             wear=tuple(wear.mirrored(self) for wear in self.wear),
             evaluated_spans=evaluated,

@@ -95,7 +95,8 @@ class Equipment(Parameters):
 
 def stations(catenary: Catenary, wire: str) -> list[float]:
     """[m] where equipment needs nodes in the mesh of a wire, by its name."""
-    return [x for item in catenary.equipment if item.wire == wire for x in item.stations(catenary)]
+    found = [x for item in catenary.equipment if item.wire == wire for x in item.stations(catenary)]
+    return found if catenary.midpoint_position is None else [*found, catenary.midpoint_position]
 
 
 def equipment_faults(catenary: Catenary) -> Iterator[str]:

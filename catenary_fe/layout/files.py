@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.catenary import Catenary, Loss, RayleighDamping
+from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import Wear
@@ -28,6 +28,7 @@ from catenary_fe.layout.parameters import (
     shorten,
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.terminations import Loss
 from catenary_fe.layout.toml import read_toml
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
@@ -173,6 +174,8 @@ class SectionEntry(Parameters):
     """what holds the wires along the track at the section's last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from the section's first one, that holds the wires along the track"""
+    midpoint_position: Number | None = None
+    """[m] from the section's first support to a midpoint anchor within a span, instead"""
     equipment: tuple[Equipment, ...] = ()
     """within the section's spans; that of other sections is not repeated"""
     wear: tuple[Wear, ...] = ()
@@ -234,6 +237,8 @@ class LayoutFile(Parameters):
     """what holds the wires along the track at the last support"""
     midpoint: Annotated[int, Field(strict=True)] | None = None
     """number of the support, from 1, that holds the wires along the track between two tensioned ends"""
+    midpoint_position: Number | None = None
+    """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()

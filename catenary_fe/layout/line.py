@@ -400,12 +400,3 @@ def _served_before(section: Catenary, following: Catenary, shared: int) -> int:
 def read_catenary(record: dict[str, Any]) -> Catenary:
     """A catenary, or a line of several sections, as :meth:`model_dump` wrote it."""
     return (Line if "sections" in record else Catenary).model_validate(record)
-
-
-def ends_in_words(catenary: Catenary) -> str:
-    """What holds the wires along the track, section by section."""
-    said = []
-    for section in catenary.sections if isinstance(catenary, Line) else (catenary,):
-        middle = f", held at support {section.midpoint}" if section.midpoint else ""
-        said.append(f"begin {section.begin.of_both}{middle}, end {section.end.of_both}")
-    return "; ".join(dict.fromkeys(said))

@@ -19,7 +19,7 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
-from catenary_fe.layout.track import MOST_CANT
+from catenary_fe.layout.track import Cant, MessengerStagger
 from catenary_fe.theory import Beam
 
 
@@ -29,7 +29,7 @@ class Wire(Parameters):
     mass_per_length: Positive
     """[kg/m] of the wire as installed"""
     tension: Positive
-    """[N] along the wire, held by tensioning weights"""
+    """[N] along the wire as installed, which the devices at its ends are set for"""
     axial_stiffness: Positive
     """[N] EA, cross-section times Young's modulus"""
     bending_stiffness: NonNegative = 0.0
@@ -104,6 +104,16 @@ class SectionEnd(Termination):
     """what holds contact wires here; unset: as all wires"""
     messenger_wire: Termination | None = None
     """what holds the messenger wire here; unset: as all wires"""
+
+    @model_validator(mode="after")
+    def _some_wire_ends_on_it(self) -> Self:
+        if self.contact_wire and self.messenger_wire:
+            for name in ("stiffness", "ratio", "efficiency"):
+                if getattr(self, name) != type(self).model_fields[name].default:
+                    raise ValueError(
+                        f"{name} has no effect where contact_wire and messenger_wire have ends of their own"
+                    )
+        return self
 
     def of(self, wire: Literal["contact_wire", "messenger_wire"]) -> Termination:
         """What holds this kind of wire."""
@@ -322,9 +332,6 @@ class SteadyArm(Parameters):
         return self.mass if self.length is None else self.mass_per_length * self.length / 2 + self.clamp_mass
 
 
-Cant = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-MOST_CANT, le=MOST_CANT)]
-
-
 class Support(Parameters):
     """What holds the wires at a mast. The first and the last support of a line anchor both wires."""
 
@@ -345,7 +352,7 @@ class Support(Parameters):
     """[m] between the wires at this support; unset: the catenary's"""
     stagger: Lateral = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Lateral | Literal["follows", "in curves"] = 0.0
+    messenger_stagger: MessengerStagger = 0.0
     """[m] of the messenger wire to the left of the track's centre (+y); "follows": plumb above the contact
     wire; "in curves": so where the track curves on either side, else above the track's centre"""
     cant: Cant = 0.0

@@ -12,6 +12,7 @@ from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import change_faults
 from catenary_fe.layout.pantograph import AnyPantograph
 from catenary_fe.layout.parameters import Parameters
+from catenary_fe.layout.terminations import termination_faults
 
 if TYPE_CHECKING:
     from catenary_fe.layout.catenary import Catenary
@@ -23,6 +24,7 @@ def catenary_faults(catenary: Catenary) -> list[str]:
         *line_faults(catenary),
         *_faults_of_droppers(catenary),
         *_faults_of_stitch_wires(catenary),
+        *termination_faults(catenary),
         *equipment_faults(catenary),
         *change_faults(catenary),
         *_faults_without_messenger(catenary),
@@ -46,33 +48,9 @@ def _faults_of_line(catenary: Catenary) -> Iterator[str]:
             "spatial = false, but stagger, curves or steady arms with a length leave the vertical plane;"
             " leave it out, or take the planar equivalent (--planar, Catenary.planar())"
         )
-    yield from _faults_of_ends(catenary)
     for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
         if support.stagger and support.steady_arm is None:
             yield f"support {i}: stagger = {support.stagger:g} m without a steady_arm: nothing holds the wire"
-
-
-def _faults_of_ends(catenary: Catenary) -> Iterator[str]:
-    count, midpoint = len(catenary.supports), catenary.midpoint
-    if midpoint is not None and not 1 < midpoint < count:
-        yield f"midpoint = {midpoint}: must be a support inside the section, 2 to {count - 1}"
-    both = []
-    for wire in ("contact_wire", "messenger_wire"):
-        kinds = [end.of(wire).kind for end in (catenary.begin, catenary.end)]
-        both.append("fixed" not in kinds)
-        if kinds == ["weights", "weights"] and midpoint is None:
-            yield (
-                f"{wire}: weights at both ends and no midpoint: nothing holds it along the track; name the"
-                " support that does in midpoint, or fix an end"
-            )
-    if midpoint is not None and not any(both):
-        yield "midpoint has no effect where an end of each wire is fixed; leave it out, or tension both ends"
-    if catenary.tension_loss and all(
-        end.of(wire).kind == "fixed"
-        for end in (catenary.begin, catenary.end)
-        for wire in ("contact_wire", "messenger_wire")
-    ):
-        yield "tension_loss has no effect between fixed ends; leave it out"
 
 
 def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:

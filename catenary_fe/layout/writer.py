@@ -16,7 +16,7 @@ from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.files import LayoutFile, SteadyArmEntry
+from catenary_fe.layout.files import LayoutFile, SectionEntry, SteadyArmEntry
 from catenary_fe.layout.line import Line, Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
@@ -84,15 +84,15 @@ def layout_record(catenary: Catenary) -> _Record:
 
 
 def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap) -> _Record:
-    """An entry of a further section: its wires where they are others, its supports and spans."""
-    wires = {
-        name: _wire(getattr(section, name))
-        for name in ("contact_wire", "messenger_wire", "stitch_wire")
-        if getattr(section, name) not in (None, getattr(first, name))
-    }
+    """An entry of a further section: its wires and ends where they are others, its supports and spans."""
+    others = {}
+    for name in SectionEntry.model_fields.keys() & Catenary.model_fields.keys() - _MADE:
+        value = getattr(section, name)
+        if name not in ("spans", "equipment", "wear") and value not in (None, getattr(first, name)):
+            others[name] = _wire(value) if isinstance(value, Wire) else _plain(value)
     head = {"overlap": {"spans": overlap.spans, "kind": overlap.kind, "as_written": True}}
     lists = {name: _plain(items) for name in ("equipment", "wear") if (items := getattr(section, name))}
-    return wires | {"stagger": own.get("stagger", 0.0)} | head | lists | own
+    return dict(sorted(others.items())) | {"stagger": own.get("stagger", 0.0)} | head | lists | own
 
 
 _MADE = {"supports", "stagger", "curve_radius"}

@@ -23,6 +23,7 @@ from catenary_fe.layout.current_collection import (
     mean_force_limit,
 )
 from catenary_fe.layout.parameters import changed_by_copy
+from catenary_fe.layout.terminations import slowest_contact_wire
 from catenary_fe.results.quantities import DIGITS, FORCE, LATERAL, NON_UNIFORMITY
 from catenary_fe.results.run import Run
 from catenary_fe.results.signal import FilterKind
@@ -337,7 +338,7 @@ def _speed(figures: KeyFigures) -> Criterion:
     return Criterion(
         name="speed",
         value=round(3.6 * figures.speed, 9),
-        limit=3.6 * WAVE_SPEED_SHARE * figures.catenary.contact_wire.wave_speed,
+        limit=3.6 * WAVE_SPEED_SHARE * slowest_contact_wire(figures.catenary).wave_speed,
         unit="km/h",
         source=f"{WAVE_SPEED_SHARE:g} of the wave speed (secondary source)",
     )

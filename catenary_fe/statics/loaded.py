@@ -120,12 +120,15 @@ class _Surroundings:
 
         system, mesh = line.system, line.shape.mesh
         x = np.repeat(np.concatenate([wire.x for wire in mesh.wires]), 2 * system.axes)
-        # at its left end this part of the line is held, at its right end it moves along as under weights
         around = (x > far[0] + 1e-6) & (x <= far[1] + 1e-6) if far[0] > 0 else x <= far[1] + 1e-6
         free = system.dof[around & (system.dof >= 0)]
         self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
-        beyond = system.across(x, far[1] + 1e-6).tangent(np.zeros(x.size))
-        self._stiffness = (stiffness - beyond)[self.part, self.part]
+        # cut towards what holds it along the track a wire is held, at its other end it moves as under weights
+        rest = np.zeros(x.size)
+        for n, cut in enumerate(far):
+            if cut > 0:
+                stiffness = stiffness - _loose(system, x, cut + 1e-6, n == 0).tangent(rest)
+        self._stiffness = stiffness[self.part, self.part]
         self._factor = splu(self._stiffness.tocsc(), **_NARROW)
         self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
@@ -247,6 +250,20 @@ class _Surroundings:
             row = csr_matrix((signs, (np.arange(at.size) % self.axes, at)), shape=shape) @ self._gather.T
             self._known[dropper, number] = row, self._factor.solve(row.toarray().T)
         return self._known[dropper, number]
+
+
+def _loose(system: System, x: Floats, cut: float, left: bool) -> System:
+    """The elements across a cut [m] of wires that nothing holds along the track beyond it.
+
+    x : [m], shape (all,), stations of the coordinates
+    left : beyond it is on its left, else on its right
+    """
+    across = system.across(x, cut)
+    firsts = [wire.first for wire in system.wires]
+    owner = np.searchsorted(firsts, across.first // (2 * system.axes), side="right") - 1
+    holds = [system.holds(int(n)) for n in owner]
+    held = [bool(((at <= cut) if left else (at > cut)).any()) for at in holds]
+    return across.only(~np.array(held, dtype=bool))
 
 
 def _summed(values: Floats, index: Integers, size: int) -> Floats:

@@ -13,6 +13,7 @@ from catenary_fe.layout import AnyPantograph, Catenary, InputError, counted
 from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE, gradient_limit
 from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
+from catenary_fe.layout.terminations import slowest_contact_wire
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import LineShape, Shape
 
@@ -81,7 +82,7 @@ def run_warnings(
 ) -> list[str]:
     """What to know before trusting a run: each line has the rule and both numbers."""
     catenary = shape.catenary
-    wave_speed = catenary.contact_wire.wave_speed
+    wave_speed = slowest_contact_wire(catenary).wave_speed
     found = layout_warnings(catenary)
     found += dict.fromkeys(line for p in pantographs for line in pantograph_warnings(p, speed))
     if not catenary.is_spatial:

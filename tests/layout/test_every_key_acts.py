@@ -30,6 +30,10 @@ dropper = { stiffness = 1e5, damping = 5.0, mass_per_length = 0.1, messenger_cla
 messenger_stiffness = 5e5
 messenger_damping = 10.0
 steady_arm = { stiffness = 200.0, mass = 0.5, damping = 5.0, preload = 150.0, holds_design_height = false }
+[begin]
+kind = "fixed"
+[end]
+kind = "weights"
 [[span]]
 length = 30.0
 droppers = [6.0, 15.0, { position = 24.0, contact_wire_clamp_mass = 0.1 }]
@@ -104,6 +108,12 @@ LAYOUT: dict[str, Any] = {
     "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
     "cant_base": 1.1, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
+    "midpoint": 2, "tension_loss": 0.01,
+} | {
+    f"{end}{wire}.{key}": value
+    for end, kind in (("begin", "weights"), ("end", "fixed"))
+    for wire in ("", ".contact_wire", ".messenger_wire")
+    for key, value in {"kind": kind, "stiffness": 5e3, "ratio": 3.0, "efficiency": 0.95}.items()
 } | {
     f"{place}.{key}": value
     for places, values in (
@@ -150,7 +160,9 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
     ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
 )
 def test_a_value_is_known_for_every_key(schema, known):
-    assert sorted(set(keys(schema, schema))) == sorted(known)
+    several = ("further_sections.", "overlap.")  # below
+    found = {key for key in keys(schema, schema) if not key.startswith(several)}
+    assert sorted(found) == sorted(known)
 
 
 def put(record: dict[str, Any], place: str, value: Any) -> dict[str, Any]:
@@ -233,6 +245,15 @@ REFUSED = {
     "dropper.position": "each span has its own", "support.stagger": "the layout's alternates",
     "support.steady_arm.side": "half of the links would push", "span.droppers.length": "others have none",
 }  # fmt: skip
+
+
+REFUSED |= {
+    f"{end}{wire}.{key}": "not of this kind"
+    for end in ("begin", "end")
+    for wire in ("", ".contact_wire", ".messenger_wire")
+    for key in ("kind", "stiffness", "ratio", "efficiency")
+    if ((end, wire) != ("end", "") and key != "kind") or end == "begin" or (wire, key) == ("", "stiffness")
+} | {"midpoint": "one end is fixed"}
 
 
 def base_of(place: str) -> str:
@@ -399,3 +420,60 @@ def test_a_key_of_an_elastic_pantograph_acts(key):
     if key == "law":  # beside a force, it is refused
         with pytest.raises(cf.InputError, match="give exactly one"):
             cf.ElasticPantograph(**base, law=ELASTIC["law"])
+
+
+SECTION: dict[str, Any] = {
+    "contact_wire": {"library": "AC-120 CuMg", "tension": 14e3},
+    "messenger_wire": {"library": "BzII 70", "tension": 13e3},
+    "stitch_wire": {"library": "BzII 35", "tension": 2.5e3, "length": 12.0},
+    "stagger": 0.1,
+    "curve_radius": 800.0,
+    "supports": [{"at": 6, "stagger": 0.1}],
+    "span": [{"length": 30.0, "droppers": [6.0, 24.0], "count": 6}],
+    "begin": {"kind": "weights"},
+    "end": {"kind": "fixed"},
+    "midpoint": 3,
+    "equipment": [{"x": 22.0, "mass": 9.0}],
+    "overlap": {"spans": 4, "lift": 0.06},
+    "count": 2,
+}
+OVERLAP: dict[str, Any] = {
+    "spans": 4, "kind": "insulated", "lift": 0.1, "distance": 0.3, "anchor_stagger": 0.8, "as_written": True,
+}  # fmt: skip
+SEVERAL = SPACE.replace("count = 2", "count = 6").replace("curve_radius = 900.0", "") + (
+    "[overlap]\nlift = 0.06\n[[further_sections]]\n"
+)
+
+
+def test_a_value_is_known_for_every_key_of_sections():
+    properties = layout_schema()["$defs"]
+    assert sorted(properties["SectionEntry"]["properties"]) == sorted(SECTION)
+    assert sorted(properties["Overlap"]["properties"]) == sorted(OVERLAP)
+
+
+@pytest.mark.parametrize("key", SECTION)
+def test_a_key_of_a_further_section_acts_there_or_is_refused(key):
+    record = tomllib.loads(SEVERAL)
+    before = line_of(record)
+    assert isinstance(before, cf.Line)
+    record["further_sections"][0][key] = SECTION[key]
+    if key in ("begin", "midpoint", "curve_radius"):  # each by itself does not fit
+        with pytest.raises(cf.InputError, match=r"weights at both ends|midpoint has no|curve_radius differs"):
+            line_of(record)
+        return
+    line = line_of(record)
+    if key != "overlap":
+        assert line.sections[0] == before.sections[0]
+    assert line != before
+
+
+@pytest.mark.parametrize("key", OVERLAP)
+def test_a_key_of_an_overlap_acts_or_is_refused(key):
+    record = tomllib.loads(SEVERAL)
+    before = line_of(record)
+    record["overlap"][key] = OVERLAP[key]
+    if key == "as_written":
+        with pytest.raises(cf.InputError, match="lift has no effect"):
+            line_of(record)
+        del record["overlap"]["lift"]
+    assert line_of(record).sections != before.sections
