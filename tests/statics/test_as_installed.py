@@ -295,3 +295,27 @@ def test_against_the_design():
     assert beside.force_difference_N == pytest.approx(beside.force_N - beside.design_force_N)
     assert beside.force_difference_N > 40
     assert sum(abs(row.force_difference_N) for row in cf.against_design(cf.find_form(line()))) < 1e-6
+
+
+def test_a_line_of_sections():
+    """What has changed on one section stays there, and is numbered as the section has it."""
+    section = line()
+    spans = section.spans + section.spans[:2]
+    plain = section.replace(spans=spans, supports=(section.supports[0],) * 6)
+    gone = spans[1].droppers[2].replace(state="missing")
+    droppers = tuple(gone if d.position == gone.position else d for d in spans[1].droppers)
+    changed = plain.replace(
+        spans=(spans[0], spans[1].replace(droppers=droppers), *spans[2:]), wear=[cf.Wear(span=1, area_left=0.8)]
+    )
+    overlap = cf.Overlap(spans=3)
+    whole = cf.join_sections([changed, plain], [overlap])
+    shape, design = cf.find_form(whole), cf.find_form(whole.as_designed())
+    assert (whole.departs_from_design, whole.as_designed().departs_from_design) == (True, False)
+    assert shape.dropper_forces.size == design.dropper_forces.size - 1 == len(whole.droppers)
+    assert shape.dropper_lengths.tolist() == design.dropper_lengths[whole.hanging].tolist()
+    rows = cf.against_design(shape)
+    assert [(r.section, r.span, r.dropper) for r in rows if r.state == "missing"] == [(1, 2, 3)]
+    moved = [max(abs(r.height_difference_mm) for r in rows if r.section == n) for n in (1, 2)]
+    assert moved[0] > 10
+    assert moved[1] < 1e-6
+    assert "1 dropper missing, 1 range of worn contact wire" in shape.lengths_note
