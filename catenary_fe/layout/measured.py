@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.arguments import checked, numbers
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import changes_in_words
-from catenary_fe.layout.parameters import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy, shorten
 from catenary_fe.layout.parts import Support
 from catenary_fe.layout.tables import Column, Table, read_table
 
@@ -52,10 +52,10 @@ class MeasuredWire:
         for name in ("x", "height", "stagger"):
             values = getattr(self, name)
             if values is not None:
-                values = np.asarray(values, dtype=float)
-                object.__setattr__(self, name, values)
-                if values.ndim != 1 or values.shape != self.x.shape or not np.isfinite(values).all():
-                    raise InputError(f"{self.origin}: {name}: must be as many finite numbers as x has")
+                found = numbers(f"{self.origin}: {name}", values)
+                object.__setattr__(self, name, found)
+                if found.ndim != 1 or found.shape != self.x.shape:
+                    raise InputError(f"{self.origin}: {name}: must be a list of as many numbers as x has")
         if not self.x.size or (np.diff(self.x) <= 0).any():
             raise InputError(f"{self.origin}: x must ascend, with at least one row; sort the rows")
         odd = ~((self.height > LOWEST) & (self.height < HIGHEST))
@@ -136,6 +136,10 @@ def set_to_measured(catenary: Catenary, measured: MeasuredWire) -> Catenary:
     Raises InputError for lines of several sections, lines that have changed since their droppers were cut,
     and places that were not measured.
     """
+    if not isinstance(measured, MeasuredWire):
+        raise InputError(
+            f"measured = {shorten(measured)}: must be a MeasuredWire; read_measured reads a file"
+        )
     if getattr(catenary, "sections", ()):
         raise InputError(f"{measured.origin}: {catenary.name} has several sections; take one after the other")
     if catenary.departs_from_design:

@@ -305,7 +305,8 @@ def test_a_line_of_sections():
     gone = spans[1].droppers[2].replace(state="missing")
     droppers = tuple(gone if d.position == gone.position else d for d in spans[1].droppers)
     changed = plain.replace(
-        spans=(spans[0], spans[1].replace(droppers=droppers), *spans[2:]), wear=[cf.Wear(span=1, area_left=0.8)]
+        spans=(spans[0], spans[1].replace(droppers=droppers), *spans[2:]),
+        wear=[cf.Wear(span=1, area_left=0.8)],
     )
     overlap = cf.Overlap(spans=3)
     whole = cf.join_sections([changed, plain], [overlap])
