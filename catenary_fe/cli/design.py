@@ -14,6 +14,7 @@ from catenary_fe.cli.installed import design_beside, installed_rows, measured_li
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
 from catenary_fe.layout import Catenary, ends_in_words, load_catenary
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
+from catenary_fe.layout.installed import changes_in_words, worn_mass
 from catenary_fe.layout.rules import check_lengths, layout_warnings
 from catenary_fe.layout.terminations import slowest_contact_wire
 from catenary_fe.results.export import cell, check_xlsx, common_name, save_catenary
@@ -115,7 +116,8 @@ def layout_facts(catenary: Catenary) -> dict[str, Any]:
         "contact_wire_height_m": catenary.contact_wire_height,
         **wires,
         "largest_speed_by_wave_speed_kmh": 3.6 * WAVE_SPEED_SHARE * slowest_contact_wire(catenary).wave_speed,
-        "mass_of_wires_kg": line * catenary.length,
+        "changed_since_droppers_were_cut": changes_in_words(catenary) or "nothing",
+        "mass_of_wires_kg": line * catenary.length - worn_mass(catenary),
         "mass_of_clamps_kg": clamps,
         "mass_of_equipment_kg": sum(item.mass for item in catenary.equipment),
         "evaluated_spans": list(catenary.spans_to_evaluate),
@@ -159,8 +161,8 @@ def form(
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
     contact wire then lies from its design height. A line that hangs otherwise than its design, with lengths
-    of its own, droppers missing or a worn wire, is shown beside the design. With measured heights, layout.toml
-    in the folder is the line that has them.
+    of its own, droppers missing or a worn wire, is shown beside the design. With measured heights, the
+    folder's layout.toml is the line that has them.
     """
     if xlsx:
         if answer.folder is None:

@@ -95,8 +95,8 @@ class Mesh:
         stitch wire
     stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
     messengers : how many messenger wires there are: one a tension section, or none
-    loose : lower and upper clamps that broken droppers left on the wires; empty on a line of several sections,
-        whose sections have them
+    loose : lower and upper clamps that broken droppers left on the wires; empty on a line of several
+        sections, whose sections have them
     """
 
     wires: tuple[WireMesh, ...]

@@ -192,37 +192,34 @@ class Catenary(Parameters):
     @_fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line; where a clamp has slid, of the upper end."""
-        x = [
-            d.position + a
-            for a, s in zip(self.support_positions, self.spans, strict=False)
-            for d in s.droppers
-        ]
-        positions: NDArray[np.float64] = np.array(x)[self.hanging]
-        return positions
+        starts = np.repeat(self.support_positions[:-1], [len(span.droppers) for span in self.spans])
+        positions = starts + np.array([d.position for span in self.spans for d in span.droppers])
+        found: NDArray[np.float64] = positions[self.hanging]
+        return found
 
     @_fixed_array
     def lower_clamp_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line, of their clamps on the contact wire."""
-        lower: NDArray[np.float64] = self.dropper_positions + [d.clamp_shift for d in self.droppers]
-        return lower
+        low: NDArray[np.float64] = self.dropper_positions + [d.clamp_shift for d in self.droppers]
+        return low
 
     @_fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
         spans = [i for i, s in enumerate(self.spans, start=1) for _ in s.droppers]
-        hanging: NDArray[np.int64] = np.array(spans, dtype=np.int64)[self.hanging]
-        return hanging
+        found: NDArray[np.int64] = np.array(spans, dtype=np.int64)[self.hanging]
+        return found
 
     @_fixed_array
     def dropper_numbers(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of each dropper in its span, from 1, as designed: missing ones count."""
         numbers = [n for span in self.spans for n in range(1, len(span.droppers) + 1)]
-        hanging: NDArray[np.int64] = np.array(numbers, dtype=np.int64)[self.hanging]
-        return hanging
+        found: NDArray[np.int64] = np.array(numbers, dtype=np.int64)[self.hanging]
+        return found
 
     @property
     def departs_from_design(self) -> bool:
-        """Whether droppers are gone, clamps have slid or the contact wire has worn since its droppers were cut."""
+        """Whether droppers are gone, clamps have slid or the contact wire has worn."""
         return bool(changes_of(self))
 
     def as_designed(self) -> Self:
@@ -320,8 +317,8 @@ class Catenary(Parameters):
     @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
-        held: NDArray[np.int64] = np.array(self._wires_held(), dtype=np.int64)[self.hanging]
-        return held
+        found: NDArray[np.int64] = np.array(self._wires_held(), dtype=np.int64)[self.hanging]
+        return found
 
     def _wires_held(self) -> list[int]:
         """Number of the contact wire, from 0, of every dropper of the design."""

@@ -1,4 +1,4 @@
-"""What has changed on a line since its droppers were cut: droppers gone, clamps slid, the contact wire worn."""
+"""What has changed on a line since its droppers were cut: droppers gone, clamps slid, contact wire worn."""
 
 from __future__ import annotations
 
@@ -88,6 +88,17 @@ def changes_in_words(catenary: Catenary) -> str:
         counted(count, name.split()[0]) + name.removeprefix(name.split()[0])
         for name, count in changes_of(catenary).items()
     )
+
+
+def worn_mass(catenary: Catenary) -> float:
+    """[kg] that has worn off the contact wires."""
+    lost = 0.0
+    for part in getattr(catenary, "sections", ()) or (catenary,):
+        for wear in part.wear:
+            begin, end = wear.ends(part)
+            wires = len(part.contact_wire_offsets) if wear.contact_wire is None else 1
+            lost += wires * (1 - wear.area_left) * (end - begin) * part.contact_wire.mass_per_length
+    return lost
 
 
 def designed_spans(catenary: Catenary) -> tuple[Any, ...]:

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.arguments import checked, numbers
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import changes_in_words
-from catenary_fe.layout.parameters import changed_by_copy
+from catenary_fe.layout.parameters import changed_by_copy, shorten
 from catenary_fe.layout.parts import Support
 from catenary_fe.layout.tables import Column, Table, read_table
 
@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 
 LONGEST_GAP = 2.0  # [m] between rows, over which heights run straight: 0.1 mm beside a wire's curvature
 NEAR = 0.25  # [m] from a row whose height is taken as it is: a millimetre at a gradient of 1 in 250
+LOWEST, HIGHEST = 2.0, 10.0  # [m] of any contact wire, by a wide margin
+_RANGE = f"contact wires lie {LOWEST:g} to {HIGHEST:g} m above the rail"
 _COLUMNS = {
     "x": Column("length"),
     "height": Column("length", least=0.0),
@@ -50,18 +52,16 @@ class MeasuredWire:
         for name in ("x", "height", "stagger"):
             values = getattr(self, name)
             if values is not None:
-                values = np.asarray(values, dtype=float)
-                object.__setattr__(self, name, values)
-                if values.ndim != 1 or values.shape != self.x.shape or not np.isfinite(values).all():
-                    raise InputError(f"{self.origin}: {name}: must be as many finite numbers as x has")
+                found = numbers(f"{self.origin}: {name}", values)
+                object.__setattr__(self, name, found)
+                if found.ndim != 1 or found.shape != self.x.shape:
+                    raise InputError(f"{self.origin}: {name}: must be a list of as many numbers as x has")
         if not self.x.size or (np.diff(self.x) <= 0).any():
             raise InputError(f"{self.origin}: x must ascend, with at least one row; sort the rows")
-        if not ((self.height > 2) & (self.height < 10)).all():
-            bad = int(np.argmax(~((self.height > 2) & (self.height < 10))))
-            raise InputError(
-                f"{self.origin}: height = {self.height[bad]:g} m at x = {self.x[bad]:g} m: contact wires lie 2 to"
-                " 10 m above the rail; look at the unit"
-            )
+        odd = ~((self.height > LOWEST) & (self.height < HIGHEST))
+        if odd.any():
+            z, x = self.height[odd][0], self.x[odd][0]
+            raise InputError(f"{self.origin}: height = {z:g} m at x = {x:g} m: {_RANGE}; look at the unit")
 
     def at(self, name: str, x: float, where: str) -> float:
         """A value [m], "height" or "stagger", at a place: straight between rows that are close.
@@ -81,8 +81,9 @@ class MeasuredWire:
         if abs(self.x[nearest] - x) <= NEAR:
             return float(values[nearest])
         raise InputError(
-            f"{self.origin}: no height at {where}, x = {x:.2f} m: the nearest row is at {self.x[nearest]:.2f} m;"
-            f" measure within {NEAR:g} m of it, or on both sides at most {LONGEST_GAP:g} m apart"
+            f"{self.origin}: no height at {where}, x = {x:.2f} m: the nearest row is at"
+            f" {self.x[nearest]:.2f} m; measure within {NEAR:g} m of it, or on both sides"
+            f" at most {LONGEST_GAP:g} m apart"
         )
 
 
@@ -90,7 +91,7 @@ class MeasuredWire:
 def read_measured(path: str | Path) -> MeasuredWire:
     """Measured heights from a table (CSV) with columns ``x``, ``height`` and perhaps ``stagger``, with units.
 
-    ``x_m``, ``height [mm]``: from the line's first support, above the rail, to the left of the track's centre.
+    ``x_m``, ``height [mm]``: from the line's first support, above the rail, to the left of the track.
 
     Raises InputError, one line for each fault with row and column.
     """
@@ -102,17 +103,25 @@ def read_measured(path: str | Path) -> MeasuredWire:
         if row[name] is None
     ]
     if not faults:
-        faults = _descents(table)
+        faults = [*_odd_heights(table), *_descents(table)]
     if faults:
         raise InputError(*faults)
     columns: dict[str, Any] = {n: np.array([row[n] for row in table.rows]) for n in table.headings}
     return MeasuredWire(**columns, origin=str(table.path))
 
 
+def _odd_heights(table: Table) -> list[str]:
+    return [
+        f"{table.where(i, 'height')}: height = {row['height']:g} m: {_RANGE}; look at the unit"
+        for i, row in enumerate(table.rows)
+        if not LOWEST < row["height"] < HIGHEST
+    ]
+
+
 def _descents(table: Table) -> list[str]:
     return [
-        f"{table.where(i, 'x')}: x = {row['x']:g} m does not lie behind the row before, {before['x']:g} m; sort"
-        " the rows, each place once"
+        f"{table.where(i, 'x')}: x = {row['x']:g} m does not lie behind the row before, {before['x']:g} m;"
+        " sort the rows, each place once"
         for i, (before, row) in enumerate(zip(table.rows, table.rows[1:], strict=False), start=1)
         if row["x"] <= before["x"]
     ]
@@ -124,16 +133,20 @@ def set_to_measured(catenary: Catenary, measured: MeasuredWire) -> Catenary:
     Supports whose steady arm holds the height, and anchors, get the measured height; the messenger wire stays
     where its supports are. Droppers have no lengths: form finding gives those that bring the wire there.
 
-    Raises InputError for lines of several sections, lines that have changed since their droppers were cut, and
-    places that were not measured.
+    Raises InputError for lines of several sections, lines that have changed since their droppers were cut,
+    and places that were not measured.
     """
+    if not isinstance(measured, MeasuredWire):
+        raise InputError(
+            f"measured = {shorten(measured)}: must be a MeasuredWire; read_measured reads a file"
+        )
     if getattr(catenary, "sections", ()):
         raise InputError(f"{measured.origin}: {catenary.name} has several sections; take one after the other")
     if catenary.departs_from_design:
         raise InputError(
-            f"{measured.origin}: the layout says what has changed ({changes_in_words(catenary)}), and measured"
-            " heights are of the line as it is: leave out missing droppers, put clamps where they are, give"
-            " contact_wire the worn wire's values"
+            f"{measured.origin}: the layout says what has changed ({changes_in_words(catenary)}), and"
+            " measured heights are of the line as it is: leave out missing droppers, put clamps where they"
+            " are, give contact_wire the worn wire's values"
         )
     supports = []
     last = len(catenary.supports) - 1
@@ -165,7 +178,7 @@ def _system_height(catenary: Catenary, support: int, height: float, where: str) 
             f"{where}: the measured height of {height:g} m lies above the messenger wire at"
             f" {left + height:g} m; look at the unit, or at the system height"
         )
-    return left
+    return round(left, 9)
 
 
 def with_design_heights_of(goal: Catenary, catenary: Catenary) -> Catenary:

@@ -149,8 +149,8 @@ class Dropper(Parameters):
     contact_wire: Literal[1, 2] | None = None
     """which of two contact wires hangs here, the right (1) or the left (2) one; unset: in turns"""
     state: Literal["missing", "broken"] | None = None
-    """"missing": gone since with both clamps; "broken": gone, its clamps stay on the wires. The other droppers
-    keep the lengths that they were cut to with this one in place"""
+    """"missing": gone since, with both clamps; "broken": gone, its clamps stay on the wires. The other
+    droppers keep the lengths that they were cut to with this one in place"""
     clamp_shift: Number = 0.0
     """[m] along the track by which its lower clamp has slid since, positive in x; its length stays"""
 

@@ -40,7 +40,7 @@ class WireSubstructures:
     """
 
     def __init__(self, catenary: Catenary, settings: MeshSettings, as_set: Shape | None = None) -> None:
-        """as_set : the line when arms and supports were set, whose springs now give; unset: they are set here"""
+        """as_set : the line when arms and supports were set, which now give; unset: they are set here"""
         self.catenary, self.settings = catenary, settings
         self.mesh = make_mesh(catenary, settings)
         self.wires = TautWires(catenary, self.mesh)
@@ -211,6 +211,9 @@ class WireSubstructures:
 
         A Newton step on the stored energy, which is convex: shortened where it would raise it.
         """
+        if self.masts:
+            self.masts = self.masts.turned(self.found, self.reactions)
+            self.__dict__.pop("_arm_springs", None)
         force = np.zeros_like(self.found)
         if self.axes == 3:
             force[0] = self._lateral_loads()
@@ -335,7 +338,7 @@ class WireSubstructures:
         )
 
     def _with_springs(self, reactions: Floats) -> Floats:
-        """[N], shape (axes - 1, 2 * nodes): reactions, and the forces of arms and supports that were set before."""
+        """[N], shape (axes - 1, 2 * nodes): reactions, and forces of what was set before."""
         found = reactions.copy()
         if self.masts:
             found[-1, self.masts.at] = self.masts.forces(self.found[-1])

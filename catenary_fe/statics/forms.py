@@ -14,6 +14,7 @@ from catenary_fe.layout.rules import check_lengths
 from catenary_fe.statics.form_finding import WireSubstructures
 from catenary_fe.statics.line import join_shapes
 from catenary_fe.statics.rules import (
+    check_bridged,
     check_pulls,
     check_reach,
     check_room,
@@ -57,6 +58,7 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     designed = catenary.as_designed()
     if catenary.gives_dropper_lengths:
         shape = _hang(designed, given_lengths(designed, None), mesh)
+        check_bridged(designed, shape.dropper_lengths, shape.height_errors)
     else:
         shape = _find_lengths(designed, mesh)
     if not catenary.departs_from_design:

@@ -61,7 +61,7 @@ def design_of(shape: Shape, catenary: Catenary | None = None) -> Shape:
 
 @checked
 def against_design(shape: Shape, design: Shape | None = None) -> list[InstalledRow]:
-    """Heights and dropper forces of a line as it is beside those of its design, one row a dropper of the design.
+    """Heights and dropper forces of a line as it is beside those of its design, one row a designed dropper.
 
     design : unset: found here
 
@@ -106,11 +106,11 @@ def _rows(shape: Shape, design: Shape, section: int | None) -> list[InstalledRow
 
 @checked
 def fit_measured(catenary: Catenary, measured: MeasuredWire, mesh: MeshSettings | None = None) -> Shape:
-    """The line that has measured heights: dropper lengths with which the wire, as it is, lies where it was measured.
+    """The line that has measured heights: with the dropper lengths that explain them.
 
-    Supports get the measured height (and stagger, where there is one), droppers the lengths that bring the wire
-    to the measured height at them; the messenger wire's supports and the design heights at droppers stay. Its
-    catenary has these lengths: a layout of the line as it is.
+    Supports get the measured height (and stagger, where there is one), droppers the lengths that bring the
+    wire to the measured height at them; the messenger wire's supports and the design heights at droppers
+    stay. Its catenary has these lengths: a layout of the line as it is.
 
     Raises InputError where the measurement does not reach a support or a dropper, where no lengths give these
     heights, and for a layout that says itself what has changed.

@@ -15,6 +15,7 @@ from catenary_fe.layout.rules import dropper_names
 Floats = NDArray[np.float64]
 
 STEEPEST = np.pi / 3  # [rad] a steady arm that stands up more has no hold on the wire
+MOST_OFF = 0.3  # [m] from its design height, of a contact wire on given lengths: as much as an overlap lifts
 _LEAST_PULL = 1.0  # [N] lateral
 
 
@@ -89,13 +90,29 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
 
 
 def check_reach(catenary: Catenary, lengths: Floats) -> None:
-    """Raises InputError for clamps that slid further than droppers of lengths [m], shape (droppers,), reach."""
+    """Raises InputError for clamps that slid further than droppers of lengths [m] reach."""
     _report(
-        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches; it"
-        " slides until the dropper is taut"
+        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches;"
+        " it slides until the dropper is taut"
         for name, dropper, length in zip(dropper_names(catenary), catenary.droppers, lengths, strict=True)
         if abs(dropper.clamp_shift) >= length
     )
+
+
+def check_bridged(catenary: Catenary, lengths: Floats, errors: Floats) -> None:
+    """Raises InputError for given lengths that take the contact wire where no line has it.
+
+    lengths, errors : [m], shape (droppers,), stress-free, and heights above the design's
+    """
+    worst = int(np.abs(errors).argmax())
+    if abs(errors[worst]) > MOST_OFF:
+        count, side = int((np.abs(errors) > MOST_OFF).sum()), "above" if errors[worst] > 0 else "below"
+        raise InputError(
+            f"{dropper_names(catenary)[worst]}: with a length of {lengths[worst]:g} m the contact wire hangs"
+            f" {1e3 * abs(errors[worst]):.0f} mm {side} its design height ({counted(count, 'dropper')} more"
+            f" than {1e3 * MOST_OFF:g} mm off): no such line is built; look at its unit, the lengths beside,"
+            " and system_height"
+        )
 
 
 def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) -> Floats:

@@ -162,8 +162,8 @@ class Shape:
             else ("dropper lengths of its design")
         )
         return (
-            f"hung with the {lengths}{f', {changes}' if changes else ''}: at the droppers the contact wire lies"
-            f" {errors.min():+.1f} to {errors.max():+.1f} mm from its design height"
+            f"hung with the {lengths}{f', {changes}' if changes else ''}: at the droppers the contact wire"
+            f" lies {errors.min():+.1f} to {errors.max():+.1f} mm from its design height"
         )
 
     def contact_wire_height(self, x: ArrayLike) -> Floats:

@@ -76,10 +76,17 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
 def _draw_droppers(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], upper: np.ndarray) -> None:
     catenary = part.catenary
     shown = np.flatnonzero(part.inside(catenary.dropper_positions))
-    x = catenary.dropper_positions[shown]
-    below = [lines[catenary.dropper_contact_wires[i]].height(catenary.dropper_positions[i]) for i in shown]
+    x, low = catenary.dropper_positions[shown], catenary.lower_clamp_positions[shown]
+    below = [
+        lines[catenary.dropper_contact_wires[i]].height(catenary.lower_clamp_positions[i]) for i in shown
+    ]
     above = [lines[upper[i]].height(catenary.dropper_positions[i]) for i in shown]
-    ax.vlines(x, below, above, color=style.DROPPER, linewidth=0.9 if part.is_close else 0.6, label="dropper")
+    width = 0.9 if part.is_close else 0.6
+    slid = np.flatnonzero(low != x)
+    ax.vlines(x[low == x], np.array(below)[low == x], np.array(above)[low == x], color=style.DROPPER,
+              linewidth=width, label="dropper")  # fmt: skip
+    for i in slid:
+        ax.plot((low[i], x[i]), (below[i], above[i]), color=style.DROPPER, linewidth=width)
 
 
 def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:

@@ -64,9 +64,9 @@ def _heights(
     chosen = part.inside(catenary.dropper_positions)
     chosen &= catenary.design_heights - nominal(catenary.dropper_positions) < RUN_OFF
     x = catenary.dropper_positions[chosen]
-    goal = 1e3 * (catenary.design_heights[chosen] - nominal(x))
+    wanted = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
-    ax.plot(x, goal, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
+    ax.plot(x, wanted, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
     above = "design line" if catenary.changes_height else "nominal"
     style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
@@ -74,7 +74,7 @@ def _heights(
         mark_detail(ax, detail)
     else:
         texts = [f"{force:.0f} N" for force in shape.dropper_forces[chosen]]
-        if style.label_row(ax, x, goal + 1e3 * shape.height_errors[chosen], texts, above=5):
+        if style.label_row(ax, x, wanted + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
     return _finished(ax, part, f"height above {above} (mm)", what)
 

@@ -434,6 +434,7 @@ SECTION: dict[str, Any] = {
     "end": {"kind": "fixed"},
     "midpoint": 3,
     "equipment": [{"x": 22.0, "mass": 9.0}],
+    "wear": [{"span": 2, "area_left": 0.9}],
     "overlap": {"spans": 4, "lift": 0.06},
     "count": 2,
 }

@@ -45,7 +45,7 @@ def line(changed: dict[tuple[int, int], dict] | None = None, **others) -> cf.Cat
 
 
 def by_hand(wire: cf.Catenary, design: cf.Shape) -> tuple[np.ndarray, np.ndarray]:
-    """Heights [m] of the contact wire at the lower clamps, and dropper forces [N], of straight pieces of string.
+    """Heights [m] of the contact wire at the lower clamps, and dropper forces [N], of pieces of string.
 
     Exact: under its weight a string's ends pull as those of a straight one with half the weight at each.
     Arms and supports keep the force and height that they have in the design.
@@ -82,7 +82,7 @@ def by_hand(wire: cf.Catenary, design: cf.Shape) -> tuple[np.ndarray, np.ndarray
 
     def out_of_balance(z):
         total = []
-        pull, lift = forces(z)
+        _, lift = forces(z)
         for name, own, params, sign, places in (
             ("contact", z[:n], CONTACT, 1, lows),
             ("messenger", z[n:], MESSENGER, -1, ups),
@@ -155,7 +155,7 @@ def test_a_missing_dropper_by_formula():
 
 
 def test_a_wire_of_uniform_wear_by_formula():
-    """It rises with the messenger wire between its outer droppers: T₁ u₁ + T₂ u₂ = Δw s²/2, s from mid-span."""
+    """Between outer droppers it rises with the messenger wire: T₁ u₁ + T₂ u₂ = Δw s²/2, s from mid-span."""
     share, s = 0.8, 20.0
     worn = line(wear=[cf.Wear(begin=0.0, end=150.0, area_left=share)])
     new, design = cf.find_form(worn), cf.find_form(worn.as_designed())
@@ -173,3 +173,150 @@ def test_nothing_changed_is_nothing():
     shape, design = cf.find_form(same), cf.find_form(same.as_designed())
     assert shape.contact_wire_z == pytest.approx(design.contact_wire_z, abs=1e-8)
     assert shape.dropper_forces == pytest.approx(design.dropper_forces, abs=1e-3)
+
+
+def test_a_slid_clamp_and_its_mirror_image():
+    changed = CHANGES["all"]
+    shape, image = cf.find_form(changed), cf.find_form(changed.mirrored())
+    x = np.linspace(0, 3 * SPAN, 301)
+    assert image.contact_wire_height(3 * SPAN - x) == pytest.approx(shape.contact_wire_height(x), abs=1e-7)
+    assert image.dropper_forces[::-1] == pytest.approx(shape.dropper_forces, abs=1e-3)
+
+
+def test_lengths_of_a_table_and_a_missing_dropper():
+    """Given lengths that are those of the design: the same line."""
+    changed = CHANGES["all"]
+    lengths = cf.find_form(changed.as_designed()).dropper_lengths
+    assert lengths.size == changed.hanging.size == len(changed.droppers) + 2
+    shape, given = cf.find_form(changed), cf.find_form(changed.with_dropper_lengths(lengths))
+    assert given.contact_wire_z == pytest.approx(shape.contact_wire_z, abs=1e-6)
+    assert "2 droppers" not in given.lengths_note
+    assert "1 dropper missing, 1 dropper broken, 1 clamp slid, 1 range of worn" in given.lengths_note
+
+
+@pytest.mark.parametrize("arm", [ARM, cf.SteadyArm(length=1.0, mass_per_length=0.7, clamp_mass=0.2)])
+def test_all_engines_run_on_it(arm):
+    """At rest it stays where it was hung; engines agree."""
+    stagger = 0.2 if arm.length else 0.0
+    supports = [
+        cf.Support(messenger_stiffness=3e5, steady_arm=arm, stagger=stagger * (-1) ** i) for i in range(4)
+    ]
+    changed = line(
+        {(1, 4): {"state": "missing"}, (2, 2): {"clamp_shift": 0.3}, (2, 4): {"state": "broken"}},
+        contact_wire=CONTACT.replace(bending_stiffness=120.0),
+        supports=supports,
+        wear=[cf.Wear(span=2, area_left=0.8)],
+        damping=cf.RayleighDamping(beta=1e-3),
+    )
+    shape = cf.find_form(changed)
+    assert cf.solve_statics(shape).contact_wire_z == pytest.approx(shape.contact_wire_z, abs=1e-9)
+    head = cf.library.pantograph("EN 50318:2002")
+    runs = {}
+    for method in ("nonlinear", "linearised", "exudyn") if not arm.length else ("nonlinear", "linearised"):
+        run = cf.simulate(shape, [head], speed=50.0, method=method)
+        runs[method] = run.contact_force_statistics()[0]
+        assert run.data.sizes["dropper"] == len(changed.droppers) == 13
+    for statistics in runs.values():
+        assert statistics.mean == pytest.approx(runs["nonlinear"].mean, rel=5e-3)
+        assert statistics.std == pytest.approx(runs["nonlinear"].std, rel=1e-2)
+    lifts = cf.elasticity(shape, positions=[75.0, 85.0]).values
+    design = cf.elasticity(cf.find_form(changed.as_designed()), positions=[75.0, 85.0]).values
+    assert lifts[1] > 1.03 * design[1]
+
+
+def test_a_link_keeps_its_pivot():
+    """Where its wire gets lighter, the link turns about the design's pivot, and takes the wire sideways."""
+    arm = cf.SteadyArm(length=1.0, mass_per_length=0.7, clamp_mass=0.2)
+    supports = [cf.Support(steady_arm=arm, stagger=0.2 * (-1) ** i) for i in range(4)]
+    worn = line({(2, 1): {"state": "missing"}}, supports=supports, wear=[cf.Wear(span=1, area_left=0.8)])
+    shape, design = cf.find_form(worn), cf.find_form(worn.as_designed())
+    moved = shape.contact_wire_height(SPAN) - design.contact_wire_height(SPAN)
+    pivots = shape.system.arms.pivot - design.system.arms.pivot
+    assert abs(moved) > 5e-3
+    assert np.abs(pivots).max() < 1e-4
+    sideways = shape.wires[0].lateral(SPAN) - design.wires[0].lateral(SPAN)
+    assert abs(sideways) > 1e-3
+
+
+GONE = {"clamp_shift": 0.1, "state": "missing"}
+REFUSED = {
+    "past the next one": ({(1, 2): {"clamp_shift": 11.0}}, (), "clamp_shift puts its clamp at 26 m"),
+    "past a support": ({(1, 1): {"clamp_shift": -5.5}}, (), "dropper 1: .* past the support at 0 m"),
+    "too far": ({(1, 3): {"clamp_shift": 1.2}}, (), r"more than its length of 0\.828 m reaches"),
+    "of one that is gone": ({(2, 3): GONE}, (), "of a dropper that is missing"),
+    "some lengths": ({(2, 3): {"length": 0.9, "state": "missing"}}, (), "14 of 15 droppers have none"),
+    "no span": ({}, [{"span": 4}], "wear 1: span = 4: the line has spans 1 to 3"),
+    "off the line": ({}, [{"begin": 1.0, "end": 151.0}], "must lie between the line's ends"),
+    "twice": ({}, [{"span": 1}, {"span": 1}], "wear 2: .* overlaps with wear 1"),
+    "one of one": ({}, [{"span": 1, "contact_wire": 2}], "there is one contact wire"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be(case):
+    changed, wear, said = REFUSED[case]
+    with pytest.raises(cf.InputError, match=said) as caught:
+        cf.find_form(line(changed, wear=[cf.Wear(area_left=0.9, **each) for each in wear]))
+    assert len(caught.value.problems) == 1
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"span": 1, "begin": 0.0, "end": 3.0}, "give exactly one"),
+        ({"begin": 0.0}, "give exactly one"),
+        ({"begin": 3.0, "end": 2.0}, "end = 2 m does not lie behind begin = 3 m"),
+    ],
+)
+def test_no_range_of_wear(values, said):
+    with pytest.raises(cf.InputError, match=said):
+        cf.Wear(area_left=0.9, **values)
+
+
+def test_a_length_that_nobody_hangs():
+    lengths = cf.find_form(line()).dropper_lengths.copy()
+    lengths[7] = 0.05
+    with pytest.raises(
+        cf.InputError, match=r"span 2: dropper 3 .* hangs 3\d\d mm above its design height"
+    ) as caught:
+        cf.find_form(line().with_dropper_lengths(lengths))
+    assert len(caught.value.problems) == 1
+
+
+def test_against_the_design():
+    rows = cf.against_design(cf.find_form(CHANGES["broken"]))
+    assert [row.state for row in rows] == [""] * 6 + ["broken", "", "missing"] + [""] * 6
+    gone, beside = rows[6], rows[7]
+    assert (gone.force_N, gone.length_m) == (0.0, None)
+    assert gone.height_difference_mm == pytest.approx(
+        1e3 * (gone.contact_wire_height_m - gone.design_height_m)
+    )
+    assert gone.height_difference_mm < -5
+    assert beside.force_difference_N == pytest.approx(beside.force_N - beside.design_force_N)
+    assert beside.force_difference_N > 40
+    assert sum(abs(row.force_difference_N) for row in cf.against_design(cf.find_form(line()))) < 1e-6
+
+
+def test_a_line_of_sections():
+    """What has changed on one section stays there, and is numbered as the section has it."""
+    section = line()
+    spans = section.spans + section.spans[:2]
+    plain = section.replace(spans=spans, supports=(section.supports[0],) * 6)
+    gone = spans[1].droppers[2].replace(state="missing")
+    droppers = tuple(gone if d.position == gone.position else d for d in spans[1].droppers)
+    changed = plain.replace(
+        spans=(spans[0], spans[1].replace(droppers=droppers), *spans[2:]),
+        wear=[cf.Wear(span=1, area_left=0.8)],
+    )
+    overlap = cf.Overlap(spans=3)
+    whole = cf.join_sections([changed, plain], [overlap])
+    shape, design = cf.find_form(whole), cf.find_form(whole.as_designed())
+    assert (whole.departs_from_design, whole.as_designed().departs_from_design) == (True, False)
+    assert shape.dropper_forces.size == design.dropper_forces.size - 1 == len(whole.droppers)
+    assert shape.dropper_lengths.tolist() == design.dropper_lengths[whole.hanging].tolist()
+    rows = cf.against_design(shape)
+    assert [(r.section, r.span, r.dropper) for r in rows if r.state == "missing"] == [(1, 2, 3)]
+    moved = [max(abs(r.height_difference_mm) for r in rows if r.section == n) for n in (1, 2)]
+    assert moved[0] > 10
+    assert moved[1] < 1e-6
+    assert "1 dropper missing, 1 range of worn contact wire" in shape.lengths_note

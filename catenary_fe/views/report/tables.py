@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted, ends_in_words
+from catenary_fe.layout.installed import changes_in_words
 from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
@@ -180,6 +181,7 @@ def _line_table(catenary: Catenary) -> Table:
         ("spans", f"{len(lengths)} of {_range(lengths)} m, {catenary.length:g} m in all"),
         ("droppers", f"{_range(counts)} in a span, {stiffnesses} kN/m"),
         ("dropper lengths", "given by the layout" if catenary.gives_dropper_lengths else "of the design"),
+        *([("changed since they were cut", changes)] if (changes := changes_in_words(catenary)) else []),
         ("contact wire height", f"{_range(catenary.contact_wire_heights)} m above the rail"),
         ("pre-sag", f"{_range([1e3 * span.pre_sag for span in catenary.spans])} mm"),
         ("system height", _system_height(catenary)),
