@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         StitchWire,
         Support,
         Termination,
+        Wear,
         Wire,
         build_line,
         catenary_from_tables,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
         library,
         load_catenary,
         load_pantograph,
+        read_measured,
         target_mean_force,
     )
     from catenary_fe.results import (
@@ -59,7 +61,7 @@ if TYPE_CHECKING:
         load_run,
         save_catenary,
     )
-    from catenary_fe.statics import Shape, find_form, find_heights
+    from catenary_fe.statics import Shape, against_design, find_form, find_heights, fit_measured
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import modal_run, simulate, solve_modes
     from catenary_fe.studies.single_wire import run_wire
@@ -71,7 +73,7 @@ _ROOMS = {
     "engines.settings": ("TimeSettings",),
     "engines.exudyn": ("ExudynModel", "exudyn_model"),
     "studies.single_wire": ("run_wire",),
-    "statics": ("Shape", "find_form", "find_heights"),
+    "statics": ("Shape", "against_design", "find_form", "find_heights", "fit_measured"),
     "statics.elasticity": ("StaticState", "elasticity", "solve_statics"),
     "fe": ("MeshSettings",),
     "fe.wire_problem": ("SlidingPantograph", "WireMotion", "WireProblem", "even_nodes", "graded_nodes"),
@@ -110,11 +112,14 @@ _ROOMS = {
         "StitchWire",
         "Support",
         "Termination",
+        "Wear",
         "Wire",
         "build_line",
         "catenary_from_tables",
         "join_sections",
         "layout_warnings",
+        "MeasuredWire",
+        "read_measured",
         "library",
         "load_catenary",
         "load_pantograph",
@@ -136,6 +141,7 @@ __all__ = [
     "ForceStatistics",
     "InputError",
     "Line",
+    "MeasuredWire",
     "MeshSettings",
     "ModalRun",
     "Modes",
@@ -157,9 +163,11 @@ __all__ = [
     "Support",
     "Termination",
     "TimeSettings",
+    "Wear",
     "Wire",
     "WireMotion",
     "WireProblem",
+    "against_design",
     "build_line",
     "catenary_from_tables",
     "criteria_rows",
@@ -168,6 +176,7 @@ __all__ = [
     "exudyn_model",
     "find_form",
     "find_heights",
+    "fit_measured",
     "graded_nodes",
     "join_sections",
     "layout_warnings",
@@ -176,6 +185,7 @@ __all__ = [
     "load_pantograph",
     "load_run",
     "modal_run",
+    "read_measured",
     "run_wire",
     "save_catenary",
     "simulate",

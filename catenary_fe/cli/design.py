@@ -10,12 +10,13 @@ import numpy as np
 
 from catenary_fe.cli import options
 from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.installed import design_beside, installed_rows, measured_line, print_installed
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, static_shape, working
 from catenary_fe.layout import Catenary, ends_in_words, load_catenary
 from catenary_fe.layout.current_collection import WAVE_SPEED_SHARE
 from catenary_fe.layout.rules import check_lengths, layout_warnings
 from catenary_fe.layout.terminations import slowest_contact_wire
-from catenary_fe.results.export import cell, check_xlsx, common_name
+from catenary_fe.results.export import cell, check_xlsx, common_name, save_catenary
 from catenary_fe.results.quantities import decimals_of
 
 if TYPE_CHECKING:
@@ -135,17 +136,31 @@ def _fact_rows(facts: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]
 @click.command(epilog="\b\nExample:\n  catenary-fe form models/layouts/en50318_2002.toml -o form")
 @options.layout
 @options.flag("--design-lengths", "Find the lengths of the design, whatever lengths the layout gives.")
+@click.option(
+    "--measured",
+    type=click.Path(),
+    metavar="FILE",
+    help="Measured heights (CSV: x_m, height_m, perhaps stagger_m): find the lengths that explain them.",
+)
 @options.flag("--xlsx", "Write the tables as a workbook, too (with -o).")
 @options.drawn_spans
 @options.planar
 @options.answer()
 def form(
-    layout: str, design_lengths: bool, xlsx: bool, spans: list[int] | None, planar: bool, answer: Answer
+    layout: str,
+    design_lengths: bool,
+    measured: str | None,
+    xlsx: bool,
+    spans: list[int] | None,
+    planar: bool,
+    answer: Answer,
 ) -> None:
     """Find the dropper lengths that give the contact wire of a LAYOUT its design height.
 
     Where the droppers have lengths of their own, the line is hung with these, and the table says how far the
-    contact wire then lies from its design height.
+    contact wire then lies from its design height. A line that hangs otherwise than its design, with lengths
+    of its own, droppers missing or a worn wire, is shown beside the design. With measured heights, layout.toml
+    in the folder is the line that has them.
     """
     if xlsx:
         if answer.folder is None:
@@ -155,14 +170,18 @@ def form(
     if design_lengths:
         catenary = catenary.without_dropper_lengths()
     _check_drawn(catenary, spans, answer.folder)
-    with static_shape(catenary, answer) as (shape, folder):
+    line = measured_line(catenary, measured) if measured else catenary
+    with static_shape(line, answer) as (shape, folder):
+        design = design_beside(shape, catenary, answer.quiet)
+        compared = installed_rows(shape, design)
         result: dict[str, Any] = {
-            "dropper_lengths_given": catenary.gives_dropper_lengths,
+            "dropper_lengths_given": line.gives_dropper_lengths,
             "droppers": [row.as_dict() for row in shape.dropper_schedule()],
             "supports": [row.as_dict() for row in shape.support_schedule()],
             "steady_arm_forces_N": shape.steady_arm_forces.tolist(),
             "steady_arm_lateral_forces_N": shape.steady_arm_lateral_forces.tolist(),
             "messenger_support_forces_N": shape.support_forces.tolist(),
+            "against_design": compared,
             "warnings": layout_warnings(catenary),
         }
         if folder:
@@ -170,11 +189,21 @@ def form(
 
             folder.json("form.json", result)
             write_schedules(folder, shape, xlsx)
-            folder.picture("layout.png", plot_layout(catenary, shape, spans=spans))
-            folder.picture("static_shape.png", plot_static_shape(shape, spans=spans))
-            if catenary.is_spatial:
+            if compared:
+                folder.table("against_design.csv", compared)
+            if measured:
+                save_catenary(line, folder.path / "layout.toml", comment=f"From heights measured: {measured}")
+            folder.picture("layout.png", plot_layout(line, shape, spans=spans))
+            folder.picture("static_shape.png", plot_static_shape(shape, spans=spans, design=design))
+            if line.is_spatial:
                 folder.picture("plan.png", plot_plan(shape, spans=spans))
-    answer.show(result, lambda: print_schedules(shape), shape)
+
+    def tables() -> None:
+        print_schedules(shape)
+        if compared:
+            print_installed(line.name, compared)
+
+    answer.show(result, tables, shape)
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe static models/layouts/en50318_2002.toml --force 100")

@@ -95,8 +95,9 @@ def say(kind: str, text: str, colour: str) -> None:
 
 
 def say_lengths(shape: Shape, quiet: bool) -> None:
-    """One line on standard error where a line hangs with dropper lengths that its layout gives."""
-    if shape.catenary.gives_dropper_lengths and not quiet:
+    """One line on standard error where a line hangs otherwise than its design does."""
+    line = shape.catenary
+    if (line.gives_dropper_lengths or line.departs_from_design) and not quiet:
         say("note", shape.lengths_note, "cyan")
 
 

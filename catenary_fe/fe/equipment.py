@@ -1,4 +1,4 @@
-"""Equipment within the spans as masses at nodes, and as mass and stiffness of elements."""
+"""What sits on the wires, and what has worn off: masses at nodes, mass and stiffness of elements."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.equipment import Equipment
+from catenary_fe.layout.installed import broken_droppers
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -39,12 +40,37 @@ def add_to_elements(catenary: Catenary, mesh: Mesh, name: str, values: list[Floa
             values[wire][covered] = item.bending_stiffness
 
 
+def wear_elements(catenary: Catenary, mesh: Mesh, name: str, values: list[Floats]) -> None:
+    """What is left of a parameter of the contact wires' elements, by its name; changes ``values``.
+
+    values : for each wire shape (elements,): mass [kg/m] and EA [N] with the area, EI [N m²] with its square
+    """
+    power = {"mass_per_length": 1, "axial_stiffness": 1, "bending_stiffness": 2}.get(name)
+    if power is None or not catenary.wear:
+        return
+    for wire in range(mesh.contact_wires):
+        x = mesh.wires[wire].x
+        left = np.ones(x.size - 1)
+        for wear in catenary.wear:
+            if wear.contact_wire in (None, wire + 1):
+                begin, end = wear.ends(catenary)
+                covered = np.clip(np.minimum(x[1:], end) - np.maximum(x[:-1], begin), 0, None) / np.diff(x)
+                left -= (1 - wear.area_left) * covered
+        values[wire] *= left**power
+
+
 def lumped(catenary: Catenary, mesh: Mesh) -> tuple[Integers, Floats]:
-    """Masses at points: numbers of their nodes among all, and what each has [kg]; shape (masses,) both."""
+    """Masses at points: numbers of their nodes among all, and what each has [kg]; shape (masses,) both.
+
+    Of equipment, and of the clamps that broken droppers left.
+    """
     found = [
         (int(mesh.first_nodes[wire] + np.abs(mesh.wires[wire].x - item.middle(catenary)).argmin()), mass)
         for item, wire, mass in _carried(catenary, mesh)
         if not item.length
     ]
+    broken = broken_droppers(catenary)
+    for clamps, left in zip(mesh.loose, (broken.lower, broken.upper), strict=True):
+        found += zip(mesh.nodes(clamps).tolist(), left.tolist(), strict=True)
     nodes, masses = zip(*found, strict=True) if found else ((), ())
     return np.array(nodes, dtype=np.int64), np.array(masses, dtype=float)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from catenary_fe.fe.equipment import add_to_elements, lumped
+from catenary_fe.fe.equipment import add_to_elements, lumped, wear_elements
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary, Wire
 from catenary_fe.layout.terminations import WireField, tension_shares
@@ -131,6 +131,7 @@ def element_values(catenary: Catenary, mesh: Mesh, name: str) -> Floats:
         np.full(n, float(getattr(kind, name)))
         for n, kind in zip(counts, wire_kinds(catenary, mesh), strict=True)
     ]
+    wear_elements(catenary, mesh, name, values)
     add_to_elements(catenary, mesh, name, values)
     return np.concatenate(values)
 

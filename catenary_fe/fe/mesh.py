@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.layout import Catenary, InputError
 from catenary_fe.layout.arguments import number
 from catenary_fe.layout.equipment import stations
+from catenary_fe.layout.installed import broken_droppers
 from catenary_fe.layout.parameters import changed_by_copy
 
 Floats = NDArray[np.float64]
@@ -94,6 +95,8 @@ class Mesh:
         stitch wire
     stitch_ends : shape (stitch wires, 2), nodes of the messenger wire that stitch wires are clamped on
     messengers : how many messenger wires there are: one a tension section, or none
+    loose : lower and upper clamps that broken droppers left on the wires; empty on a line of several sections,
+        whose sections have them
     """
 
     wires: tuple[WireMesh, ...]
@@ -102,6 +105,7 @@ class Mesh:
     upper: Clamps
     stitch_ends: Integers
     messengers: int = 1
+    loose: tuple[Clamps, ...] = ()
 
     @property
     def contact(self) -> WireMesh:
@@ -140,7 +144,7 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
 
     Raises InputError for a line so long, or elements so short, that no machine could take them.
     """
-    at, below = catenary.dropper_positions, catenary.dropper_contact_wires
+    at, low, below, hangs = _clamped(catenary)
     contact_wires = len(catenary.contact_wire_offsets)
     above = np.full(at.size, contact_wires)
     stitched = list(catenary.stitched_supports)
@@ -150,7 +154,7 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     ends = np.stack([middles - halves, middles + halves], axis=1)
     extra = stations(catenary, "contact wire")
     lines = [
-        _line_mesh(catenary, np.append(at[below == i], extra), settings, settings.contact_wire_element)
+        _line_mesh(catenary, np.append(low[below == i], extra), settings, settings.contact_wire_element)
         for i in range(contact_wires)
     ]
     hangers = [at[above == contact_wires], ends.ravel(), stations(catenary, "messenger wire")]
@@ -163,11 +167,24 @@ def make_mesh(catenary: Catenary, settings: MeshSettings) -> Mesh:
     return Mesh(
         wires=tuple(lines),
         contact_wires=contact_wires,
-        lower=_clamps(lines, below, at),
-        upper=_clamps(lines, above, at),
+        lower=_clamps(lines, below[hangs], low[hangs]),
+        upper=_clamps(lines, above[hangs], at[hangs]),
+        loose=tuple(_clamps(lines, wires[~hangs], x[~hangs]) for wires, x in ((below, low), (above, at))),
         stitch_ends=np.searchsorted(lines[-1 if not ends.size else contact_wires].x, ends - _ROUNDING),
         messengers=1 if catenary.messenger_wire else 0,
     )
+
+
+def _clamped(catenary: Catenary) -> tuple[Floats, Floats, Integers, NDArray[np.bool_]]:
+    """Of all droppers with clamps on the wires: places [m] above and below, contact wire, whether they hang.
+
+    Those that hang come first, then the broken ones.
+    """
+    low, wires = catenary.lower_clamp_positions, catenary.dropper_contact_wires
+    broken = broken_droppers(catenary)
+    at = np.concatenate([catenary.dropper_positions, broken.x])
+    hangs = np.arange(at.size) < low.size
+    return at, np.concatenate([low, broken.x]), np.concatenate([wires, broken.contact_wires]), hangs
 
 
 def _clamps(lines: list[WireMesh], wires: Integers, at: Floats) -> Clamps:

@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.installation import wire_field, wire_kinds
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout.terminations import tension_shares
 from catenary_fe.layout.track import cant_bends, lean
 
 Floats = NDArray[np.float64]
+
+_BESIDE = 1e-6  # [m] beside a support, where the tension steps
 
 
 def node_lean(catenary: Catenary, mesh: Mesh) -> Floats:
@@ -24,12 +28,18 @@ def cant_forces(catenary: Catenary, mesh: Mesh) -> Floats:
     at supports, where the cant is given; stitch wires' share is the messenger wire's.
     """
     forces = np.zeros(int(mesh.first_nodes[-1]))
-    lines = [(catenary.contact_wire, catenary.contact_wire_heights)] * mesh.contact_wires
-    if catenary.messenger_wire:
-        lines.append((catenary.messenger_wire, catenary.messenger_support_heights))
-    for number, (wire, heights) in enumerate(lines):
-        at = mesh.first_nodes[number] + mesh.wires[number].supports
-        forces[at] += wire.tension * cant_bends(catenary, heights)
+    if not any(support.cant for support in catenary.supports):
+        return forces
+    for number, (wire, kind) in enumerate(zip(mesh.wires, wire_kinds(catenary, mesh), strict=True)):
+        if number == mesh.first_stitch:
+            break
+        name = wire_field(mesh, number)
+        of_wire = name == "contact_wire"
+        heights = catenary.contact_wire_heights if of_wire else catenary.messenger_support_heights
+        at = catenary.support_positions
+        beside = [np.clip(at + side, at[0], at[-1]) for side in (-_BESIDE, _BESIDE)]
+        tension = kind.tension * np.mean([tension_shares(catenary, name, x) for x in beside], axis=0)
+        forces[mesh.first_nodes[number] + wire.supports] += tension * cant_bends(catenary, heights)
     return forces
 
 

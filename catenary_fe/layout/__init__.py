@@ -8,7 +8,9 @@ from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
+from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,
@@ -48,6 +50,7 @@ __all__ = [
     "Equipment",
     "InputError",
     "Line",
+    "MeasuredWire",
     "Overlap",
     "Panhead",
     "Pantograph",
@@ -62,6 +65,7 @@ __all__ = [
     "StitchWire",
     "Support",
     "Termination",
+    "Wear",
     "Wire",
     "build_line",
     "catenary_from_tables",
@@ -77,6 +81,7 @@ __all__ = [
     "load_pantograph",
     "pantograph_schema",
     "read_catenary",
+    "read_measured",
     "recorded_pantograph",
     "target_mean_force",
 ]

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.installed import Wear, changes_of, designed_spans
 from catenary_fe.layout.parameters import (
     GRAVITY,
     NonEmpty,
@@ -100,6 +101,8 @@ class Catenary(Parameters):
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
+    wear: tuple[Wear, ...] = ()
+    """of the contact wire, since its droppers were cut"""
     cant_base: Positive = 1.5
     """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()
@@ -176,40 +179,73 @@ class Catenary(Parameters):
         """[m] from the first to the last support."""
         return float(self.support_positions[-1])
 
+    @_fixed_array
+    def hanging(self) -> NDArray[np.bool_]:
+        """Shape (designed droppers,): which droppers hang; others are missing or broken."""
+        return np.array([d.state is None for span in self.spans for d in span.droppers], dtype=bool)
+
     @cached_property
     def droppers(self) -> tuple[Dropper, ...]:
-        """All droppers of the line in order."""
-        return tuple(dropper for span in self.spans for dropper in span.droppers)
+        """All droppers of the line that hang, in order."""
+        return tuple(dropper for span in self.spans for dropper in span.droppers if dropper.state is None)
 
     @_fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
-        """[m], shape (droppers,), along the line."""
-        starts = self.support_positions
-        return np.array([starts[i] + d.position for i, s in enumerate(self.spans) for d in s.droppers])
+        """[m], shape (droppers,), along the line; where a clamp has slid, of the upper end."""
+        x = [
+            d.position + a
+            for a, s in zip(self.support_positions, self.spans, strict=False)
+            for d in s.droppers
+        ]
+        positions: NDArray[np.float64] = np.array(x)[self.hanging]
+        return positions
+
+    @_fixed_array
+    def lower_clamp_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line, of their clamps on the contact wire."""
+        lower: NDArray[np.float64] = self.dropper_positions + [d.clamp_shift for d in self.droppers]
+        return lower
 
     @_fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
-        return np.array([i for i, s in enumerate(self.spans, start=1) for _ in s.droppers], dtype=np.int64)
+        spans = [i for i, s in enumerate(self.spans, start=1) for _ in s.droppers]
+        hanging: NDArray[np.int64] = np.array(spans, dtype=np.int64)[self.hanging]
+        return hanging
+
+    @_fixed_array
+    def dropper_numbers(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of each dropper in its span, from 1, as designed: missing ones count."""
+        numbers = [n for span in self.spans for n in range(1, len(span.droppers) + 1)]
+        hanging: NDArray[np.int64] = np.array(numbers, dtype=np.int64)[self.hanging]
+        return hanging
+
+    @property
+    def departs_from_design(self) -> bool:
+        """Whether droppers are gone, clamps have slid or the contact wire has worn since its droppers were cut."""
+        return bool(changes_of(self))
+
+    def as_designed(self) -> Self:
+        """The same line with all droppers and clamps in place and a new contact wire."""
+        return self.replace(spans=designed_spans(self), wear=()) if self.departs_from_design else self
 
     @property
     def gives_dropper_lengths(self) -> bool:
         """Whether all its droppers have lengths, with which it is hung instead of those of its design."""
-        return bool(self.droppers) and all(d.length is not None for d in self.droppers)
+        return bool(self.hanging.size) and all(d.length is not None for s in self.spans for d in s.droppers)
 
     def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
         """The same line with these dropper lengths, which it is then hung with.
 
-        lengths : [m], shape (droppers,), stress-free
+        lengths : [m], shape (designed droppers,), stress-free; missing and broken droppers count
 
         Raises InputError where their number is another one than the droppers', or one is not a length.
         """
-        values = numbers("lengths", lengths, shape=(len(self.droppers),)).tolist()
-        return self._with_lengths(values)
+        return self._with_lengths(numbers("lengths", lengths, shape=(self.hanging.size,)).tolist())
 
     def without_dropper_lengths(self) -> Self:
         """The same line without dropper lengths of its own: form finding gives it those of the design."""
-        return self._with_lengths([None] * len(self.droppers))
+        return self._with_lengths([None] * self.hanging.size)
 
     def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
         left = iter(lengths)
@@ -247,7 +283,7 @@ class Catenary(Parameters):
     def design_heights(self) -> NDArray[np.float64]:
         """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
         offsets = np.concatenate([s.height_offsets() for s in self.spans])
-        heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets
+        heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets[self.hanging]
         return heights
 
     @_fixed_array
@@ -284,11 +320,13 @@ class Catenary(Parameters):
     @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
-        wires = len(self.contact_wire_offsets)
-        return np.array(
-            [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(self.droppers)],
-            dtype=np.int64,
-        )
+        held: NDArray[np.int64] = np.array(self._wires_held(), dtype=np.int64)[self.hanging]
+        return held
+
+    def _wires_held(self) -> list[int]:
+        """Number of the contact wire, from 0, of every dropper of the design."""
+        wires, designed = len(self.contact_wire_offsets), [d for span in self.spans for d in span.droppers]
+        return [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(designed)]
 
     def has_stitch_wire(self, support: int) -> bool:
         """Whether one hangs at the support of this number, from 0. Raises InputError for an absent one."""
@@ -361,12 +399,13 @@ class Catenary(Parameters):
 
     def mirrored(self) -> Self:
         """The mirror image: x runs the other way, left stays left."""
-        wires = iter(self.dropper_contact_wires.tolist())
+        wires = iter(self._wires_held())
         spans = []
         for span in self.spans:
             images = [
                 d.replace(
                     position=span.length - d.position,
+                    clamp_shift=-d.clamp_shift,
                     contact_wire=next(wires) + 1 if self.contact_wire_spacing else None,
                 )
                 for d in span.droppers
@@ -384,6 +423,7 @@ class Catenary(Parameters):
             if self.midpoint_position is None
             else self.length - self.midpoint_position,
             equipment=tuple(item.mirrored(self) for item in self.equipment),
+            wear=tuple(wear.mirrored(self) for wear in self.wear),
             evaluated_spans=evaluated,
         )
 

@@ -14,6 +14,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Overlap, join_sections
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
@@ -177,6 +178,8 @@ class SectionEntry(Parameters):
     """[m] from the section's first support to a midpoint anchor within a span, instead"""
     equipment: tuple[Equipment, ...] = ()
     """within the section's spans; that of other sections is not repeated"""
+    wear: tuple[Wear, ...] = ()
+    """of the section's contact wire; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -184,7 +187,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = (self.model_fields_set | {"equipment"}) - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment", "wear"}) - {"overlap", "count"}
         return first.replace(
             **{name: getattr(self, name) for name in own},
             further_sections=(),
@@ -240,6 +243,8 @@ class LayoutFile(Parameters):
     """share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
+    wear: tuple[Wear, ...] = ()
+    """of the contact wire, since its droppers were cut"""
     cant_base: Positive = 1.5
     """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()

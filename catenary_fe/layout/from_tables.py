@@ -23,7 +23,7 @@ MAST_COLUMNS = {
     "section": _WHOLE, "support": _WHOLE, "chainage": _LENGTH, "span_before": _SIZE, "span_after": _SIZE,
     "curve_radius_before": _LENGTH, "curve_radius_after": _LENGTH, "stagger": _LENGTH,
     "messenger_stagger": _LENGTH, "contact_wire_height": _SIZE, "system_height": _SIZE, "pre_sag": _LENGTH,
-    "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE, "uplift_room": _SIZE,
+    "midpoint": Column("yes"), "stitch_wire": Column("yes"), "stitch_wire_length": _SIZE, "uplift_room": _SIZE,
     "arm_kind": Column("text", words=("link", "spring", "none")),
     "arm_side": Column("text", words=("left", "right")), "arm_length": _SIZE,
     "arm_stiffness": Column("stiffness", least=0.0),
@@ -133,6 +133,7 @@ def _section(mast_table: Table, dropper_table: Table | None, pattern: LinePatter
             source=f"{line.source}; masts and droppers of tables".removeprefix("; "),
             spans=_with_own(mast_table, spans),
             supports=supports,
+            midpoint=_midpoint(mast_table, line),
             evaluated_spans=None,
         )
     except InputError as error:
@@ -220,6 +221,18 @@ def _placed(text: str, masts: Table, droppers: Table | None) -> str:
     if found := re.match(r"(?:support|span) (\d+)\b", text):
         return f"{masts.where(int(found[1]) - 1)}: {text}"
     return text if text.startswith(str(masts.path)) else f"{masts.path}: {text}"
+
+
+def _midpoint(table: Table, line: Catenary) -> int | None:
+    """Number of the support that is said to be the midpoint. Raises InputError where that is not clear."""
+    marked = [i for i, row in enumerate(table.rows) if row.get("midpoint")]
+    if len(marked) > 1:
+        raise InputError(f"{table.where(marked[1], 'midpoint')}: yes: a section has one midpoint")
+    if line.midpoint and not table.has("midpoint"):
+        raise InputError(
+            f"{table.path}: row 1: the base has a midpoint; add a column midpoint, with yes at its support"
+        )
+    return marked[0] + 1 if marked else None
 
 
 def _supports(table: Table, pattern: LinePattern, lengths: Sequence[float]) -> tuple[Support, ...]:

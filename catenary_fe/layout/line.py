@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_serializer, model_validator
 
-from catenary_fe.layout.arguments import numbers
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
@@ -99,6 +98,7 @@ class Line(Catenary):
         first = min(sections, key=lambda section: section.contact_wire.wave_speed)
         common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
         common["equipment"] = _equipment(sections, overlaps)
+        common["wear"] = ()  # of the sections
         own = {name: data[name] for name in _OWN if name in data}
         return (
             common
@@ -150,6 +150,31 @@ class Line(Catenary):
         return tuple(dropper for section in self.sections for dropper in section.droppers)
 
     @cached_property
+    def hanging(self) -> NDArray[np.bool_]:
+        """Shape (designed droppers,): which droppers hang, section by section."""
+        return self._of_droppers("hanging")
+
+    @cached_property
+    def dropper_numbers(self) -> NDArray[np.int64]:
+        """Shape (droppers,): number of each dropper in its section's span, from 1."""
+        return self._of_droppers("dropper_numbers")
+
+    @cached_property
+    def lower_clamp_positions(self) -> NDArray[np.float64]:
+        """[m], shape (droppers,), along the line, of their clamps on the contact wires."""
+        parts = zip(self.sections, self.begins, strict=True)
+        return np.concatenate([section.lower_clamp_positions + begin for section, begin in parts])
+
+    @property
+    def departs_from_design(self) -> bool:
+        """Whether any section departs from what its droppers were cut for."""
+        return any(section.departs_from_design for section in self.sections)
+
+    def as_designed(self) -> Self:
+        """The same line as designed, section by section."""
+        return self.replace(sections=tuple(section.as_designed() for section in self.sections))
+
+    @cached_property
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line."""
         parts = zip(self.sections, self.begins, strict=True)
@@ -179,14 +204,16 @@ class Line(Catenary):
         """Whether stagger, curves or links lie outside the vertical plane."""
         return any(section.is_spatial for section in self.sections)
 
+    @property
+    def gives_dropper_lengths(self) -> bool:
+        """Whether all droppers of all sections have lengths, with which they are hung."""
+        hung = [section for section in self.sections if section.hanging.size]
+        return bool(hung) and all(section.gives_dropper_lengths for section in hung)
+
     def _with_lengths(self, lengths: Sequence[float | None]) -> Self:
         left = iter(lengths)
-        sections = [s._with_lengths([next(left) for _ in s.droppers]) for s in self.sections]
+        sections = [s._with_lengths([next(left) for _ in range(s.hanging.size)]) for s in self.sections]
         return self.replace(sections=tuple(sections))
-
-    def with_dropper_lengths(self, lengths: Sequence[float] | NDArray[np.float64]) -> Self:
-        """The same line with these stress-free dropper lengths [m], shape (droppers,), section by section."""
-        return self._with_lengths(numbers("lengths", lengths, shape=(len(self.droppers),)).tolist())
 
     def planar(self) -> Self:
         """The same line in the vertical plane, section by section."""

@@ -19,7 +19,7 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
-from catenary_fe.layout.track import MOST_CANT
+from catenary_fe.layout.track import Cant, MessengerStagger
 from catenary_fe.theory import Beam
 
 
@@ -148,6 +148,11 @@ class Dropper(Parameters):
     """[m] design height of the contact wire here above the nominal one; unset: the span's pre-sag decides"""
     contact_wire: Literal[1, 2] | None = None
     """which of two contact wires hangs here, the right (1) or the left (2) one; unset: in turns"""
+    state: Literal["missing", "broken"] | None = None
+    """"missing": gone since with both clamps; "broken": gone, its clamps stay on the wires. The other droppers
+    keep the lengths that they were cut to with this one in place"""
+    clamp_shift: Number = 0.0
+    """[m] along the track by which its lower clamp has slid since, positive in x; its length stays"""
 
 
 class StitchWire(Wire):
@@ -327,9 +332,6 @@ class SteadyArm(Parameters):
         return self.mass if self.length is None else self.mass_per_length * self.length / 2 + self.clamp_mass
 
 
-Cant = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-MOST_CANT, le=MOST_CANT)]
-
-
 class Support(Parameters):
     """What holds the wires at a mast. The first and the last support of a line anchor both wires."""
 
@@ -350,7 +352,7 @@ class Support(Parameters):
     """[m] between the wires at this support; unset: the catenary's"""
     stagger: Lateral = 0.0
     """[m] of the contact wire to the left of the track's centre (+y)"""
-    messenger_stagger: Lateral | Literal["follows", "in curves"] = 0.0
+    messenger_stagger: MessengerStagger = 0.0
     """[m] of the messenger wire to the left of the track's centre (+y); "follows": plumb above the contact
     wire; "in curves": so where the track curves on either side, else above the track's centre"""
     cant: Cant = 0.0

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.equipment import equipment_faults
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.installed import change_faults
 from catenary_fe.layout.pantograph import AnyPantograph
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.terminations import termination_faults
@@ -25,6 +26,7 @@ def catenary_faults(catenary: Catenary) -> list[str]:
         *_faults_of_stitch_wires(catenary),
         *termination_faults(catenary),
         *equipment_faults(catenary),
+        *change_faults(catenary),
         *_faults_without_messenger(catenary),
     ]
 
@@ -56,8 +58,8 @@ def _faults_of_droppers(catenary: Catenary) -> Iterator[str]:
     for i, span in enumerate(catenary.spans):
         for number, dropper in enumerate(span.droppers, start=1):
             # a messenger wire sags: the most room is at the higher of its two supports
-            room = max(top[i], top[i + 1]) - next(design)
-            if dropper.length is not None and dropper.length >= room:
+            room = None if dropper.state else max(top[i], top[i + 1]) - next(design)
+            if room is not None and dropper.length is not None and dropper.length >= room:
                 yield (
                     f"span {i + 1}: dropper {number} with a length of {dropper.length:g} m is longer than"
                     f" the system height allows, {room:g} m here; shorten it or raise system_height"
@@ -115,17 +117,15 @@ def dropper_names(catenary: Catenary) -> list[str]:
     """Shape (droppers,): each dropper's name in errors."""
     if sections := getattr(catenary, "sections", ()):
         return [f"section {n}: {name}" for n, s in enumerate(sections, start=1) for name in dropper_names(s)]
-    return [
-        f"span {i}: dropper {number} at {dropper.position:g} m"
-        for i, span in enumerate(catenary.spans, start=1)
-        for number, dropper in enumerate(span.droppers, start=1)
-    ]
+    places = zip(catenary.dropper_spans, catenary.dropper_numbers, catenary.droppers, strict=True)
+    return [f"span {i}: dropper {number} at {dropper.position:g} m" for i, number, dropper in places]
 
 
 def check_lengths(catenary: Catenary) -> None:
     """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
-    names = dropper_names(catenary)
-    missing = [name for name, d in zip(names, catenary.droppers, strict=True) if d.length is None]
+    designed = catenary.as_designed()
+    names = dropper_names(designed)
+    missing = [name for name, d in zip(names, designed.droppers, strict=True) if d.length is None]
     if len(missing) not in (0, len(names)):
         raise InputError(
             f"{missing[0]} has no length: {len(missing)} of {len(names)} droppers have none, the others have"

@@ -7,16 +7,44 @@ y = 0.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import isfinite
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic_core import PydanticKnownError
+
+from catenary_fe.layout.parameters import Lateral
 
 if TYPE_CHECKING:
     from catenary_fe.layout.catenary import Catenary
 
 Floats = NDArray[np.float64]
 MOST_CANT = 0.3  # [m]; railways have up to 0.2 m: an assumption
+FARTHEST = 10.0  # [m], of Lateral
+
+
+def _one_fault(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    """Of a number or words, the fault of the one that is meant: pydantic's own union tells of both."""
+    if isinstance(value, str):
+        if value not in ("follows", "in curves"):
+            raise PydanticKnownError("literal_error", {"expected": "a number, 'follows' or 'in curves'"})
+    elif isinstance(value, bool) or not isinstance(value, int | float):
+        raise PydanticKnownError("float_type")
+    elif not isfinite(value):
+        raise PydanticKnownError("finite_number")
+    elif abs(value) > FARTHEST:
+        above = value > 0
+        raise PydanticKnownError(
+            "less_than_equal" if above else "greater_than_equal",
+            {"le": FARTHEST} if above else {"ge": -FARTHEST},
+        )
+    return handler(value)
+
+
+Cant = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-MOST_CANT, le=MOST_CANT)]
+MessengerStagger = Annotated[Lateral | Literal["follows", "in curves"], WrapValidator(_one_fault)]
 
 
 def curvatures(catenary: Catenary, x: ArrayLike) -> Floats:

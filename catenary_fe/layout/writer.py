@@ -16,7 +16,7 @@ from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.files import LayoutFile, SteadyArmEntry
+from catenary_fe.layout.files import LayoutFile, SectionEntry, SteadyArmEntry
 from catenary_fe.layout.line import Line, Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
@@ -85,22 +85,24 @@ def layout_record(catenary: Catenary) -> _Record:
 
 def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap) -> _Record:
     """An entry of a further section: its wires and ends where they are others, its supports and spans."""
-    wires = {
-        name: _wire(getattr(section, name))
-        for name in ("contact_wire", "messenger_wire", "stitch_wire")
-        if getattr(section, name) not in (None, getattr(first, name))
-    }
-    wires |= {
-        name: _plain(getattr(section, name))
-        for name in ("begin", "end", "midpoint", "midpoint_position")
-        if getattr(section, name) not in (None, getattr(first, name))
-    }
+    others = {}
+    for name in SectionEntry.model_fields.keys() & Catenary.model_fields.keys() - _MADE:
+        value = getattr(section, name)
+        if name not in ("spans", "equipment", "wear") and value not in (None, getattr(first, name)):
+            others[name] = _wire(value) if isinstance(value, Wire) else _plain(value)
     head = {"overlap": {"spans": overlap.spans, "kind": overlap.kind, "as_written": True}}
-    return wires | {"stagger": own.get("stagger", 0.0)} | head | own
+    lists = {name: _plain(items) for name in ("equipment", "wear") if (items := getattr(section, name))}
+    return dict(sorted(others.items())) | {"stagger": own.get("stagger", 0.0)} | head | lists | own
 
 
 _MADE = {"supports", "stagger", "curve_radius"}
-_BLOCKS = {"supports", "span", "further_sections", "equipment"}  # lists that are written as [[tables]]
+_BLOCKS = {
+    "supports",
+    "span",
+    "further_sections",
+    "equipment",
+    "wear",
+}  # lists that are written as [[tables]]
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class _Shared:
 
     @classmethod
     def of(cls, sections: Sequence[Catenary]) -> _Shared:
-        droppers = [d for section in sections for d in section.droppers]
+        droppers = [d for section in sections for span in section.spans for d in span.droppers]
         supports = [s for section in sections for s in section.supports]
         arms = [support.steady_arm for support in supports]
         arm = Counter(arms).most_common(1)[0][0] if None not in arms else None
@@ -232,7 +234,7 @@ def _toml(record: _Record, place: str = "", inline: bool = False) -> str:
         path = f"{place}.{name}" if place else name
         if isinstance(value, dict) and not inline:
             below += f"\n[{path}]\n" + _toml(value, path)
-        elif name in _BLOCKS and value:
+        elif name in _BLOCKS and value and isinstance(value, list):
             below += "".join(f"\n[[{path}]]\n" + _toml(each, path, inline=True) for each in value)
         else:
             lines.append(_line(name, value, path))

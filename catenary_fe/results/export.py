@@ -65,9 +65,9 @@ def history_tables(run: Run, filter: FilterKind = "causal") -> dict[str, Table]:
         )
     }
     spans = data["dropper_span"].values
-    first = np.searchsorted(spans, spans)  # number of the first dropper in each one's span
+    numbers = run.catenary.dropper_numbers
     tables["dropper_force"] = {"time_s": run.time} | {
-        f"span_{spans[i]}_dropper_{i - first[i] + 1}_at_{_metres(x)}_m_force_N": values
+        f"span_{spans[i]}_dropper_{numbers[i]}_at_{_metres(x)}_m_force_N": values
         for i, (x, values) in enumerate(
             zip(data["dropper_position"].values, data["dropper_force"].values, strict=True)
         )

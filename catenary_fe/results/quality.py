@@ -258,7 +258,7 @@ def _element_passing(run: Run) -> Iterator[Check]:
     if not longest:
         return
     frequency, catenary = run.speed / longest, run.catenary
-    clamps = np.unique(np.concatenate([catenary.dropper_positions, catenary.support_positions]))
+    clamps = np.unique(np.concatenate([catenary.lower_clamp_positions, catenary.support_positions]))
     if frequency >= CUT_OFF or FINE * longest > np.median(np.diff(clamps)):
         text = (
             f"at this rate elements of {longest:g} m are passed, inside the filter's band: the force has a"
@@ -386,7 +386,7 @@ def _slack_droppers(run: Run) -> Iterator[Check]:
         return
     slack = (run.data["dropper_force"].values[inside] <= 0).mean(axis=1)
     longest = int(inside[slack.argmax()])
-    number = longest - int(np.searchsorted(spans, spans[longest])) + 1
+    number = int(run.catenary.dropper_numbers[longest])
     text = (
         "share of the time that droppers of the evaluated spans are slack, longest dropper"
         f" {number} of span {spans[longest]} with {100 * slack.max():.0f} %; look at the uplift and at the"

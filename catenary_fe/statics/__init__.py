@@ -1,6 +1,7 @@
 """Form finding: dropper lengths and the static shape."""
 
-from catenary_fe.statics.form_finding import find_form, find_heights
+from catenary_fe.statics.forms import find_form, find_heights
+from catenary_fe.statics.installed import InstalledRow, against_design, design_of, fit_measured
 from catenary_fe.statics.line import LineShape
 from catenary_fe.statics.schedules import ArmRow, DropperRow, SupportRow
 from catenary_fe.statics.shape import HangingWire, Shape
@@ -9,9 +10,13 @@ __all__ = [
     "ArmRow",
     "DropperRow",
     "HangingWire",
+    "InstalledRow",
     "LineShape",
     "Shape",
     "SupportRow",
+    "against_design",
+    "design_of",
     "find_form",
     "find_heights",
+    "fit_measured",
 ]

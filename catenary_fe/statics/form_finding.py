@@ -1,8 +1,7 @@
-"""Form finding: dropper lengths that bring the contact wire to its design height, and the reverse."""
+"""All wires of a line in static equilibrium, their droppers cut at design heights or of given lengths."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 from math import tan
 from typing import Any
@@ -17,17 +16,10 @@ from catenary_fe.fe.installation import Installation, curve_pulls, point_masses
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.track import cant_forces, leaning_weights
-from catenary_fe.layout import GRAVITY, Catenary, InputError, Line, SolverError, SteadyArm
-from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.rules import check_lengths, dropper_names
-from catenary_fe.statics.line import join_shapes
-from catenary_fe.statics.rules import (
-    check_links,
-    check_pulls,
-    check_room,
-    check_stretch,
-    given_lengths,
-)
+from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
+from catenary_fe.layout.rules import dropper_names
+from catenary_fe.statics.as_set import mast_springs
+from catenary_fe.statics.rules import check_links
 from catenary_fe.statics.shape import HangingWire, Shape
 from catenary_fe.statics.taut_wires import TautProblem, TautWires, installed_lines
 
@@ -47,11 +39,13 @@ class WireSubstructures:
     reactions : [N], shape (axes - 1, 2 * nodes), forces of masts on the wires
     """
 
-    def __init__(self, catenary: Catenary, settings: MeshSettings) -> None:
+    def __init__(self, catenary: Catenary, settings: MeshSettings, as_set: Shape | None = None) -> None:
+        """as_set : the line when arms and supports were set, whose springs now give; unset: they are set here"""
         self.catenary, self.settings = catenary, settings
         self.mesh = make_mesh(catenary, settings)
         self.wires = TautWires(catenary, self.mesh)
         self.axes = 3 if catenary.is_spatial else 2
+        self.masts = mast_springs(catenary, self.wires, as_set) if as_set else None
         droppers = catenary.droppers
         self.stiffness = np.array([d.stiffness for d in droppers], dtype=float)
         self.found = np.zeros((self.axes - 1, 2 * self.wires.nodes))
@@ -59,6 +53,7 @@ class WireSubstructures:
         self._lengths = np.zeros(len(droppers))
         self._lower = self.wires.dof[self.mesh.nodes(self.mesh.lower)]
         self._upper = self.wires.dof[self.mesh.nodes(self.mesh.upper)]
+        self._shift = catenary.lower_clamp_positions - catenary.dropper_positions
         self.reactions = np.zeros_like(self.found)
         if self.axes == 3:
             guess = -catenary.lateral_pulls / self.mesh.contact_wires
@@ -116,10 +111,14 @@ class WireSubstructures:
         force = self.wires.load(self._distributed_loads()[-1])
         for _, i, at, arm in self._arms():
             force[at] -= GRAVITY * arm.hanging_mass
+            if self.masts:
+                continue
             if arm.stiffness is not None and not arm.holds_height:
                 force[at] += arm.preload + arm.stiffness * self.catenary.contact_wire_heights[i]
             elif not arm.holds_height:
                 force[at] += self._lift(at, arm)
+        if self.masts:
+            force[self.masts.at] += self.masts.force + self.masts.stiffness * self.masts.height
         nodes, masses = lumped(self.catenary, self.mesh)
         np.add.at(force, self.wires.dof[nodes], -GRAVITY * masses)
         if self.catenary.stitch_wire:
@@ -149,7 +148,8 @@ class WireSubstructures:
         if self.mesh.messenger:
             for i, height in enumerate(catenary.messenger_support_heights.tolist()):
                 held[self._at_support(self.mesh.contact_wires, i)] = height
-        return held
+        given_way = set(self.masts.at.tolist()) if self.masts else set()
+        return {at: height for at, height in held.items() if at not in given_way}
 
     def _fixed_lateral(self) -> Fixed:
         """Lateral positions [m] that masts hold, by displacement."""
@@ -169,6 +169,9 @@ class WireSubstructures:
         from scipy.sparse import diags
 
         springs = np.zeros(2 * self.wires.nodes)
+        if self.masts:
+            springs[self.masts.at] = self.masts.stiffness
+            return diags(springs).tocsr()
         for _, _, at, arm in self._arms():
             springs[at] = 0.0 if arm.holds_height else arm.stiffness or 0.0
         return diags(springs).tocsr()
@@ -255,7 +258,7 @@ class WireSubstructures:
         K = block_diag([*[self.wires.stiffness] * (self.axes - 2), self.wires.stiffness + self._arm_springs])
         span = self.spread()
         tension = self.tensions(lengths, span)
-        blocks = spring_blocks(span[:, 1:], tension, np.where(tension > 0, self.stiffness, 0.0))
+        blocks = spring_blocks(span, tension, np.where(tension > 0, self.stiffness, 0.0))[:, 1:, 1:]
         axis = size * np.arange(self.axes - 1)
         lower, upper = self._lower[:, None] + axis, self._upper[:, None] + axis
         index, blocks = np.hstack([lower, upper]), np.block([[blocks, -blocks], [-blocks, blocks]])
@@ -276,7 +279,7 @@ class WireSubstructures:
         """[m], shape (droppers, axes), from the droppers' lower to their upper clamps."""
         places = self.found if found is None else found
         across = (places[:, self._upper] - places[:, self._lower]).T
-        return np.column_stack([np.zeros(len(across)), across])
+        return np.column_stack([-self._shift, across])
 
     def tensions(self, lengths: Floats, span: Floats | None = None) -> Floats:
         """[N], shape (droppers,), of droppers of given lengths [m]."""
@@ -312,7 +315,7 @@ class WireSubstructures:
         support_forces = np.zeros((len(self.catenary.supports), self.axes - 1))
         if mesh.messenger:
             supported = [self._at_support(mesh.contact_wires, i) for i in range(len(support_forces))]
-            support_forces = self.reactions[:, supported].T
+            support_forces = self._with_springs(self.reactions)[:, supported].T
         if self.axes == 3:
             check_links(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))
@@ -331,100 +334,21 @@ class WireSubstructures:
             installed_lengths=np.linalg.norm(span, axis=1),
         )
 
+    def _with_springs(self, reactions: Floats) -> Floats:
+        """[N], shape (axes - 1, 2 * nodes): reactions, and the forces of arms and supports that were set before."""
+        found = reactions.copy()
+        if self.masts:
+            found[-1, self.masts.at] = self.masts.forces(self.found[-1])
+        return found
+
     def _arm_forces(self) -> Floats:
         """[N], shape (contact wires, spans + 1, axes - 1), of the arms on the wires."""
         forces = np.zeros((self.mesh.contact_wires, len(self.catenary.supports), self.axes - 1))
+        on_wires = self._with_springs(self.reactions)
         for wire, i, at, arm in self._arms():
-            forces[wire, i] = self.reactions[:, at]
-            if not arm.holds_height:
+            forces[wire, i] = on_wires[:, at]
+            if not (arm.holds_height or self.masts):
                 raised = self.found[-1, at] - self.catenary.contact_wire_heights[i]
                 lift = self._lift(at, arm) if arm.stiffness is None else arm.preload - arm.stiffness * raised
                 forces[wire, i, -1] = lift
         return forces
-
-
-_SETTLED = 1e-8  # [m] change from pass to pass, where form finding ends
-_PASSES = 100  # four are enough in the plane, more where much hangs on how the droppers lean
-
-
-@checked
-def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
-    """The static shape of a line; where its droppers have no lengths, with those that its design takes.
-
-    A line whose droppers all have a length is hung with these, and the contact wire lies where they let it
-    (``shape.height_errors``); ``catenary.without_dropper_lengths()`` is the same line without. Otherwise each
-    dropper gets the length with which the contact wire has its design height there:
-
-    The contact wires, held at their design heights, give the droppers' pull; stitch and messenger wires,
-    loaded with it, give the room between the wires and, in space, how the droppers lean. Each is a linear
-    problem; they are solved in turn until nothing changes.
-
-    mesh : element lengths; a shape belongs to its mesh
-
-    Raises InputError where only some droppers have a length, for impossible lengths, and for a design in
-    which a dropper or a steady arm would have to push or has no room; SolverError where the passes do not
-    come to an end.
-    """
-    if isinstance(catenary, Line):
-        return join_shapes(catenary, _of_sections(catenary, mesh))
-    check_lengths(catenary)
-    if catenary.gives_dropper_lengths:
-        return find_heights(catenary, None, mesh)
-    wires = WireSubstructures(catenary, mesh or MeshSettings())
-    lengths = np.zeros(len(catenary.droppers))
-    for _ in range(_PASSES):
-        before = lengths
-        wires.solve_cut_wires()
-        check_pulls(catenary, wires.pull)
-        span = wires.spread()
-        check_room(catenary, span[:, -1])
-        distance = np.linalg.norm(span, axis=1)
-        tension = wires.pull * distance / span[:, -1]
-        check_stretch(catenary, distance, tension)
-        lengths = distance - tension / wires.stiffness
-        wires.set_dropper_weights(lengths)
-        if np.abs(lengths - before).max(initial=0.0) < _SETTLED:
-            break
-    else:
-        raise wires.unsettled("form finding: dropper lengths still change", lengths - before)
-    return wires.shape(lengths)
-
-
-@checked
-def find_heights(
-    catenary: Catenary, lengths: Sequence[float] | Floats | None = None, mesh: MeshSettings | None = None
-) -> Shape:
-    """The reverse of form finding: the static shape that given dropper lengths result in.
-
-    The shape's catenary has these lengths, so that a run on it records them.
-
-    lengths : [m], shape (droppers,), stress-free; unset: those that the layout gives
-    mesh : element lengths; a shape belongs to its mesh
-
-    Raises InputError for missing or impossible lengths, SolverError where no equilibrium is found.
-    """
-    lengths = given_lengths(catenary, lengths)
-    if isinstance(catenary, Line):
-        return find_form(catenary.with_dropper_lengths(lengths), mesh)
-    wires = WireSubstructures(catenary.with_dropper_lengths(lengths), mesh or MeshSettings())
-    wires.set_dropper_weights(lengths)
-    wires.solve_cut_wires()
-    for _ in range(_PASSES):
-        before = wires.found.copy()
-        wires.solve_on_droppers(lengths)
-        if np.abs(wires.found - before).max() < _SETTLED:
-            break
-    else:
-        raise wires.unsettled("static shape: the wires still move", wires.found - before)
-    return wires.shape(lengths)
-
-
-def _of_sections(line: Line, mesh: MeshSettings | None) -> list[Shape]:
-    """The sections' shapes, equal ones found once."""
-    found: dict[Catenary, Shape] = {}
-    for number, section in enumerate(line.sections, start=1):
-        try:
-            found[section] = found.get(section) or find_form(section, mesh)
-        except (InputError, SolverError) as error:
-            raise type(error)(*(f"section {number}: {line}" for line in str(error).splitlines())) from None
-    return [found[section] for section in line.sections]

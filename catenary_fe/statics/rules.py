@@ -88,6 +88,16 @@ def check_links(catenary: Catenary, arm_forces: Floats) -> None:
     _report(dict.fromkeys(faults))
 
 
+def check_reach(catenary: Catenary, lengths: Floats) -> None:
+    """Raises InputError for clamps that slid further than droppers of lengths [m], shape (droppers,), reach."""
+    _report(
+        f"{name}: clamp_shift = {dropper.clamp_shift:g} m is more than its length of {length:.3f} m reaches; it"
+        " slides until the dropper is taut"
+        for name, dropper, length in zip(dropper_names(catenary), catenary.droppers, lengths, strict=True)
+        if abs(dropper.clamp_shift) >= length
+    )
+
+
 def given_lengths(catenary: Catenary, lengths: Sequence[float] | Floats | None) -> Floats:
     """[m], shape (droppers,): lengths that were given here, or in the layout.
 

@@ -159,13 +159,12 @@ class SupportRow:
 def dropper_rows(shape: Shape) -> list[DropperRow]:
     """One row a dropper, in order."""
     catenary, mesh = shape.catenary, shape.mesh
-    first = np.searchsorted(catenary.dropper_spans, catenary.dropper_spans)  # of each dropper's span
     return [
         DropperRow(
             span=(span := int(catenary.dropper_spans[i])),
             from_support=span,
             to_support=span + 1,
-            dropper=i - int(first[i]) + 1,
+            dropper=int(catenary.dropper_numbers[i]),
             chainage_m=float(catenary.dropper_positions[i]),
             position_m=dropper.position,
             cut_length_mm=round(1e3 * float(shape.dropper_lengths[i])),

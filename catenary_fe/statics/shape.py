@@ -16,6 +16,7 @@ from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.arguments import on_the_wire
+from catenary_fe.layout.installed import changes_in_words
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.statics.schedules import DropperRow, SupportRow, dropper_rows, support_rows
 
@@ -151,12 +152,18 @@ class Shape:
     @property
     def lengths_note(self) -> str:
         """Which dropper lengths the line hangs with, and what they make of its design heights."""
-        if not self.catenary.gives_dropper_lengths:
+        given, changes = self.catenary.gives_dropper_lengths, changes_in_words(self.catenary)
+        if not given and not changes:
             return "hung with the dropper lengths of its design"
-        low, high = 1e3 * self.height_errors.min(), 1e3 * self.height_errors.max()
+        errors = 1e3 * self.height_errors if self.height_errors.size else np.zeros(1)
+        lengths = (
+            f"{self.dropper_lengths.size} dropper lengths that the layout gives"
+            if given
+            else ("dropper lengths of its design")
+        )
         return (
-            f"hung with the {self.dropper_lengths.size} dropper lengths that the layout gives: at the"
-            f" droppers the contact wire lies {low:+.1f} to {high:+.1f} mm from its design height"
+            f"hung with the {lengths}{f', {changes}' if changes else ''}: at the droppers the contact wire lies"
+            f" {errors.min():+.1f} to {errors.max():+.1f} mm from its design height"
         )
 
     def contact_wire_height(self, x: ArrayLike) -> Floats:

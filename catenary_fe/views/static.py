@@ -22,31 +22,40 @@ _LEFT = "#e6a07c"  # the left contact wire, of two
 
 @checked
 @style.styled
-def plot_static_shape(shape: Shape, *, spans: Sequence[int] | None = None, ax: Axes | None = None) -> Axes:
+def plot_static_shape(
+    shape: Shape, *, spans: Sequence[int] | None = None, design: Shape | None = None, ax: Axes | None = None
+) -> Axes:
     """Static height of the contact wire above its nominal height, and the dropper tensions below it.
 
     spans : numbers of the spans, from 1; unset: the whole line, and of a long one two spans closer
+    design : of a line that hangs otherwise: its wire and its dropper tensions are drawn behind
     ax : for the heights, with the tensions written at the droppers where there is room; unset: a new figure
 
     Returns the axes of the (whole line's) heights. Raises InputError for spans that the line does not have.
     """
     part = stretch(shape.catenary, spans)
     if ax is not None:
-        return _heights(ax, shape, part)
+        return _heights(ax, shape, part, design=design)
     detail = None if spans or part.is_close else evaluated_pair(shape.catenary, overlap_spans(shape.catenary))
     rows = 3 if detail else 2
     whole, *others = style.new_panels((11.0, 2.9 * rows), [1] * rows)
-    _tensions(others[0], shape, part)
+    _tensions(others[0], shape, part, design)
     if detail:
-        _heights(others[1], shape, detail)
-    return _heights(whole, shape, part, detail)
+        _heights(others[1], shape, detail, design=design)
+    return _heights(whole, shape, part, detail, design)
 
 
-def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = None) -> Axes:
+def _heights(
+    ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = None, design: Shape | None = None
+) -> Axes:
     catenary = shape.catenary
     nominal = catenary.design_line
     frame(ax, part)
     style.mark_supports(ax, part.support_x)
+    for number, wire in enumerate(design.contact_wires if design else ()):
+        x = part.sampled(wire.x)
+        label = None if number else "contact wire as designed"
+        ax.plot(x, 1e3 * (wire.height(x) - nominal(x)), "--", color=style.DROPPER, linewidth=0.9, label=label)
     for wire, name, colour in _contact_wires(shape):
         x = part.sampled(wire.x)
         height = wire.height(x) - nominal(x)
@@ -55,9 +64,9 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
     chosen = part.inside(catenary.dropper_positions)
     chosen &= catenary.design_heights - nominal(catenary.dropper_positions) < RUN_OFF
     x = catenary.dropper_positions[chosen]
-    design = 1e3 * (catenary.design_heights[chosen] - nominal(x))
+    goal = 1e3 * (catenary.design_heights[chosen] - nominal(x))
     size = 4 if part.is_close else 2
-    ax.plot(x, design, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
+    ax.plot(x, goal, "o", color=style.DROPPER, markersize=size, label="design height at the droppers")
     above = "design line" if catenary.changes_height else "nominal"
     style.headroom(ax, 0.35)
     what = "static shape of the contact wire"
@@ -65,7 +74,7 @@ def _heights(ax: Axes, shape: Shape, part: Stretch, detail: Stretch | None = Non
         mark_detail(ax, detail)
     else:
         texts = [f"{force:.0f} N" for force in shape.dropper_forces[chosen]]
-        if style.label_row(ax, x, design + 1e3 * shape.height_errors[chosen], texts, above=5):
+        if style.label_row(ax, x, goal + 1e3 * shape.height_errors[chosen], texts, above=5):
             what += ", dropper tensions"
     return _finished(ax, part, f"height above {above} (mm)", what)
 
@@ -86,13 +95,18 @@ def _contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
     return found
 
 
-def _tensions(ax: Axes, shape: Shape, part: Stretch) -> Axes:
+def _tensions(ax: Axes, shape: Shape, part: Stretch, design: Shape | None = None) -> Axes:
     """Tension of each dropper, in the colour of the wire that it hangs on, or of two contact wires holds."""
     catenary = shape.catenary
     frame(ax, part)
     style.mark_supports(ax, part.support_x)
     chosen = part.inside(catenary.dropper_positions)
     x, forces = catenary.dropper_positions[chosen], shape.dropper_forces[chosen]
+    if design:
+        of_design = design.catenary.dropper_positions
+        there = part.inside(of_design)
+        ax.plot(of_design[there], design.dropper_forces[there], "o", color=style.DROPPER, markersize=5,
+                fillstyle="none", label="as designed")  # fmt: skip
     for name, colour, of_kind in _kinds(shape):
         mine = of_kind[chosen]
         if mine.any():

@@ -75,7 +75,8 @@ def test_a_side_load_on_the_wire_shows_on_the_head(shape, pantograph):
         found[method] = moved - still
     assert found["nonlinear"].max() > 0.01
     assert found["exudyn"] == pytest.approx(found["nonlinear"], abs=2e-4)
-    assert found["linearised"] == pytest.approx(found["nonlinear"], abs=0.03 * found["nonlinear"].max())
+    # linearised about the wire at rest: the head lifts it by 50 mm, which turns arms of 1.2 m by 4 %
+    assert found["linearised"] == pytest.approx(found["nonlinear"], abs=0.05 * found["nonlinear"].max())
 
 
 def test_each_strip_has_its_place(shape, pantograph):

@@ -24,11 +24,16 @@ equipment = [{ x = 20.0, mass = 8.0, length = 2.0, bending_stiffness = 2e3 }]
 contact_wire = { library = "AC-120 CuMg", tension = 15e3 }
 messenger_wire = { library = "BzII 70", tension = 12e3, bending_stiffness = 50.0 }
 damping = { alpha = 0.01, beta = 1e-4 }
+wear = [{ begin = 5.0, end = 20.0, area_left = 0.9 }]
 dropper = { stiffness = 1e5, damping = 5.0, mass_per_length = 0.1, messenger_clamp_mass = 0.1 }
 [support]
 messenger_stiffness = 5e5
 messenger_damping = 10.0
 steady_arm = { stiffness = 200.0, mass = 0.5, damping = 5.0, preload = 150.0, holds_design_height = false }
+[begin]
+kind = "fixed"
+[end]
+kind = "weights"
 [[span]]
 length = 30.0
 droppers = [6.0, 15.0, { position = 24.0, contact_wire_clamp_mass = 0.1 }]
@@ -91,6 +96,7 @@ SUPPORT = {
 DROPPER = {
     "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
     "messenger_clamp_mass": 0.3, "contact_wire_clamp_mass": 0.3, "height_offset": -0.005, "contact_wire": 2,
+    "state": "missing", "clamp_shift": 0.2,
 }  # fmt: skip
 LAYOUT: dict[str, Any] = {
     "name": "another", "source": "elsewhere", "contact_wire_spacing": 0.06, "stagger": 0.25,
@@ -99,8 +105,15 @@ LAYOUT: dict[str, Any] = {
     "equipment.x": 22.0, "equipment.span": 1, "equipment.position": 3.0, "equipment.mass": 9.0,
     "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
     "equipment.name": "an insulator", "equipment.source": "elsewhere",
+    "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
     "cant_base": 1.1, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
+    "midpoint": 2, "tension_loss": 0.01,
+} | {
+    f"{end}{wire}.{key}": value
+    for end, kind in (("begin", "weights"), ("end", "fixed"))
+    for wire in ("", ".contact_wire", ".messenger_wire")
+    for key, value in {"kind": kind, "stiffness": 5e3, "ratio": 3.0, "efficiency": 0.95}.items()
 } | {
     f"{place}.{key}": value
     for places, values in (
@@ -147,7 +160,9 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
     ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
 )
 def test_a_value_is_known_for_every_key(schema, known):
-    assert sorted(set(keys(schema, schema))) == sorted(known)
+    several = ("further_sections.", "overlap.")  # below
+    found = {key for key in keys(schema, schema) if not key.startswith(several)}
+    assert sorted(found) == sorted(known)
 
 
 def put(record: dict[str, Any], place: str, value: Any) -> dict[str, Any]:
@@ -225,19 +240,29 @@ ELSEWHERE = {
     "cant_base": "space", "curve_radius_end": "space",
 }  # fmt: skip
 REFUSED = {
+    "wear.span": "beside begin and end", "wear.contact_wire": "there is one",
     "equipment.span": "beside x", "equipment.position": "beside x",
     "dropper.position": "each span has its own", "support.stagger": "the layout's alternates",
     "support.steady_arm.side": "half of the links would push", "span.droppers.length": "others have none",
 }  # fmt: skip
 
 
+REFUSED |= {
+    f"{end}{wire}.{key}": "not of this kind"
+    for end in ("begin", "end")
+    for wire in ("", ".contact_wire", ".messenger_wire")
+    for key in ("kind", "stiffness", "ratio", "efficiency")
+    if ((end, wire) != ("end", "") and key != "kind") or end == "begin" or (wire, key) == ("", "stiffness")
+} | {"midpoint": "one end is fixed"}
+
+
 def base_of(place: str) -> str:
     owner, _, last = place.rpartition(".")
-    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment"):
+    if owner.endswith("wire") or owner in ("span", "dropper", "span.droppers", "equipment", "wear"):
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return (
             ELSEWHERE.get(last, "plane")
-            if last in ("contact_wire", "curve_radius", "curve_radius_end")
+            if owner != "wear" and last in ("contact_wire", "curve_radius", "curve_radius_end")
             else of_owner
         )
     return ELSEWHERE.get(last, "plane")
@@ -249,6 +274,11 @@ def test_a_key_of_a_layout_acts(place, results):
     assert outcome(base_of(place), place, results) == ("refused" if place in REFUSED else expected)
 
 
+def droppers(line: cf.Catenary) -> list[cf.Dropper]:
+    """Those of the design."""
+    return [dropper for span in line.spans for dropper in span.droppers]
+
+
 @pytest.mark.parametrize("place", [p for p in LAYOUT if p.startswith(("supports.", "span.droppers."))])
 def test_a_key_of_one_support_or_dropper_reaches_it(place):
     """What it does there is what it does in all."""
@@ -258,7 +288,9 @@ def test_a_key_of_one_support_or_dropper_reaches_it(place):
         assert line == before  # an entry with nothing in it
         return
     parts = (
-        (line.supports, before.supports) if place.startswith("supports") else (line.droppers, before.droppers)
+        (line.supports, before.supports)
+        if place.startswith("supports")
+        else (droppers(line), droppers(before))
     )
     changed = [a for a, b in zip(*parts, strict=True) if a != b]
     found = changed[0].steady_arm if "steady_arm" in place else changed[0]
@@ -388,3 +420,60 @@ def test_a_key_of_an_elastic_pantograph_acts(key):
     if key == "law":  # beside a force, it is refused
         with pytest.raises(cf.InputError, match="give exactly one"):
             cf.ElasticPantograph(**base, law=ELASTIC["law"])
+
+
+SECTION: dict[str, Any] = {
+    "contact_wire": {"library": "AC-120 CuMg", "tension": 14e3},
+    "messenger_wire": {"library": "BzII 70", "tension": 13e3},
+    "stitch_wire": {"library": "BzII 35", "tension": 2.5e3, "length": 12.0},
+    "stagger": 0.1,
+    "curve_radius": 800.0,
+    "supports": [{"at": 6, "stagger": 0.1}],
+    "span": [{"length": 30.0, "droppers": [6.0, 24.0], "count": 6}],
+    "begin": {"kind": "weights"},
+    "end": {"kind": "fixed"},
+    "midpoint": 3,
+    "equipment": [{"x": 22.0, "mass": 9.0}],
+    "overlap": {"spans": 4, "lift": 0.06},
+    "count": 2,
+}
+OVERLAP: dict[str, Any] = {
+    "spans": 4, "kind": "insulated", "lift": 0.1, "distance": 0.3, "anchor_stagger": 0.8, "as_written": True,
+}  # fmt: skip
+SEVERAL = SPACE.replace("count = 2", "count = 6").replace("curve_radius = 900.0", "") + (
+    "[overlap]\nlift = 0.06\n[[further_sections]]\n"
+)
+
+
+def test_a_value_is_known_for_every_key_of_sections():
+    properties = layout_schema()["$defs"]
+    assert sorted(properties["SectionEntry"]["properties"]) == sorted(SECTION)
+    assert sorted(properties["Overlap"]["properties"]) == sorted(OVERLAP)
+
+
+@pytest.mark.parametrize("key", SECTION)
+def test_a_key_of_a_further_section_acts_there_or_is_refused(key):
+    record = tomllib.loads(SEVERAL)
+    before = line_of(record)
+    assert isinstance(before, cf.Line)
+    record["further_sections"][0][key] = SECTION[key]
+    if key in ("begin", "midpoint", "curve_radius"):  # each by itself does not fit
+        with pytest.raises(cf.InputError, match=r"weights at both ends|midpoint has no|curve_radius differs"):
+            line_of(record)
+        return
+    line = line_of(record)
+    if key != "overlap":
+        assert line.sections[0] == before.sections[0]
+    assert line != before
+
+
+@pytest.mark.parametrize("key", OVERLAP)
+def test_a_key_of_an_overlap_acts_or_is_refused(key):
+    record = tomllib.loads(SEVERAL)
+    before = line_of(record)
+    record["overlap"][key] = OVERLAP[key]
+    if key == "as_written":
+        with pytest.raises(cf.InputError, match="lift has no effect"):
+            line_of(record)
+        del record["overlap"]["lift"]
+    assert line_of(record).sections != before.sections

@@ -82,4 +82,4 @@ def test_a_file_with_stagger_and_a_support_that_differs(tmp_path, reference_layo
     path.write_text(text.replace("[[span]]", changes, 1))
     line = cf.load_catenary(path)
     assert line.staggers[:5].tolist() == [0.2, -0.2, 0.1, -0.2, 0.2]
-    assert line.spans[4].curvature == pytest.approx(1 / 900)
+    assert line.spans[4].curvatures == pytest.approx((1 / 900, 1 / 900))

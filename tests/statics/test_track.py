@@ -145,7 +145,11 @@ def test_what_is_no_track_is_refused_or_warned_of():
         cf.Span(length=L, droppers=DROPPERS, curve_radius_end=20.0)
     with pytest.raises(cf.InputError, match=r"cant = 100.0: must be at most 0\.3; it is \[m\] by which"):
         cf.Support(cant=100.0)
-    with pytest.raises(cf.InputError, match="messenger_stagger"):
-        cf.Support(messenger_stagger="follow")
+    for value, rule in (
+        ("follow", "a number, 'follows' or 'in curves'"), (-200.0, "at least -10"), (True, "a number"),
+        (float("nan"), "a finite number"), (None, "a number"),
+    ):  # fmt: skip
+        with pytest.raises(cf.InputError, match=rf"^messenger_stagger = .*: must be {rule}; it is \[m\]"):
+            cf.Support(messenger_stagger=value)
     (warning,) = layout_warnings(line(RADII).replace(cant_base=1.07))
     assert "cant_base = 1.07 m has no effect" in warning

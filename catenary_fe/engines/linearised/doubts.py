@@ -82,7 +82,7 @@ def slack_doubts(catenary: Catenary, shortening: Floats, shortened: Integers, st
     if not shortening.size or shortening[worst] <= SLACKENING:
         return []
     span = int(catenary.dropper_spans[worst])
-    number = int(np.count_nonzero(catenary.dropper_spans[: worst + 1] == span))
+    number = int(catenary.dropper_numbers[worst])
     place, when = catenary.dropper_positions[worst], step * shortened[worst]
     return [
         f"linearised run: dropper {number} of span {span}, at {place:.4g} m, is slack at {when:.2f} s and"
