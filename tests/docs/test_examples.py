@@ -95,7 +95,23 @@ def given_lengths(folder):
     )
 
 
+def sections_and_overlaps(folder):
+    """The lift at the last mast, a force that goes over without loss, and where."""
+    import catenary_fe as cf
+
+    supports = form_of(folder / "overlap")["supports"]
+    heights = [row["contact_wire_height_m"] for row in supports if row["section"] == 1]
+    assert heights[-2] == pytest.approx(5.6, abs=1e-3)
+    run = cf.load_run(folder / "overlap_250")
+    assert run.contact_force_statistics()[0].contact_loss == 0.0
+    forces, x = run.data["section_force"].values[0], run.data["position"].values[0]
+    both = x[(forces > 0).all(axis=0)]
+    begin, end = run.catenary.common_zones[0]
+    assert begin < both.min() < (begin + end) / 2 < both.max() < end
+
+
 CLAIMS = {
+    "sections_and_overlaps": sections_and_overlaps,
     "tutorial": tutorial,
     "whole_line": whole_line,
     "curves": curves,

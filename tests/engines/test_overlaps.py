@@ -113,6 +113,11 @@ def test_engines_agree_on_an_overlap(shape: cf.Shape, run: cf.Run, pantograph: c
     inside = run.window(0)
     for method, rms in (("linearised", 0.03), ("exudyn", 0.03)):
         other = cf.simulate(shape, [pantograph], speed=SPEED, method=method)
+        x = other.data["position"].values[0]
+        assert not other.data["section_force"].values[0, 1, x < 180].any(), method
+        assert other.data["wire_height"].values[0, 0] == pytest.approx(
+            run.data["wire_height"].values[0, 0], abs=1e-4
+        ), method
         gap = other.filtered_contact_force()[0] - run.filtered_contact_force()[0]
         assert np.sqrt((gap[inside] ** 2).mean()) < rms * ours.std, method
         uplift = other.data["support_uplift"].values - run.data["support_uplift"].values

@@ -35,7 +35,7 @@ def static_contact(
     """
     problem = _Contact(setup, pantographs)
     slack: list[int] = []
-    off: list[int] = []
+    off = problem.beyond
     load = setup.line.load if signals is None else setup.load_at(signals)
     shifted = setup.static.solve(load)
     for _ in range(_CHANGES):
@@ -92,6 +92,8 @@ class _Contact:
         self._rows: Floats = np.array(rows)
         self._rest, self._heads, self._base = np.array(rest), heads, np.array(base)
         self._lifts = setup.static.solve(np.ascontiguousarray(self._rows.T)).reshape(-1, len(rows))
+        paths = setup.model.contacts
+        self.beyond = [j for j, c in enumerate(self._contacts) if not paths[c.wire].meets(c.position)]
         laws = [pantographs[contact.pantograph].body.contact for contact in self._contacts]
         self._laws = laws
         self._tangents = [(law.preload, law.stiffness) for law in laws]  # force at the strip's height, slope
@@ -101,7 +103,7 @@ class _Contact:
         """Take the straight piece of each law of points where its contact is; true if one changed."""
         changed, wire = False, self._rest + self._rows @ q - self._base
         for j, law in enumerate(self._laws):
-            if not law.points:
+            if not law.points or j in self.beyond:
                 continue
             points, compliance = np.array(law.points), float(self._rows[j] @ self._lifts[:, j])
             free = float(wire[j] - compliance * forces[j])
@@ -167,6 +169,7 @@ class _Contact:
     def placed(self, heads: Floats, forces: Floats, q: Floats) -> list[PlacedPantograph]:
         """The pantographs where they start."""
         wire, found = self._rest + self._rows @ q, []
+        wire[self.beyond] = np.nan
         for p, placed in enumerate(self._pantographs):
             mine = [j for j, contact in enumerate(self._contacts) if contact.pantograph == p]
             own = heads[self._first[p] : self._first[p + 1]]
