@@ -353,13 +353,18 @@ class System:
         )
 
     def holds(self, wire: int) -> Floats:
-        """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track."""
-        mine, found = self.wires[wire], []
+        """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track.
+
+        Springs count where nothing else holds it.
+        """
+        mine, fixed, springs = self.wires[wire], [np.array([])], [np.array([])]
         for other in self.wires:
             if (other.section, other.contact) == (mine.section, mine.contact):
                 along = 2 * self.axes * (other.first + np.arange(other.x.size))
-                found.append(other.x[(self.dof[along] == FIXED) | (self.ground_stiffness[along] > 0)])
-        return np.concatenate(found)
+                fixed.append(other.x[self.dof[along] == FIXED])
+                springs.append(other.x[self.ground_stiffness[along] > 0])
+        held = np.concatenate(fixed)
+        return held if held.size else np.concatenate(springs)
 
     @property
     def _last(self) -> Integers:

@@ -22,8 +22,8 @@ _BESIDE = 1e-6  # [m] beside a support, where the tension steps
 _LEAST = 0.5  # of the nominal tension: below it the numbers of friction are a slip of the pen
 
 
-def _wires(catenary: Catenary) -> tuple[WireField, ...]:
-    """Those that end in terminations."""
+def wires_with_ends(catenary: Catenary) -> tuple[WireField, ...]:
+    """Kinds of wires that end on terminations."""
     return ("contact_wire", "messenger_wire") if catenary.messenger_wire else ("contact_wire",)
 
 
@@ -110,7 +110,7 @@ def termination_faults(catenary: Catenary) -> Iterator[str]:
             yield f"{name}.messenger_wire has no effect on a line without a messenger wire; leave it out"
     given = catenary.midpoint is not None or catenary.midpoint_position is not None
     both: list[bool] = []
-    for wire in _wires(catenary):
+    for wire in wires_with_ends(catenary):
         kinds = [end.of(wire).kind for end in (catenary.begin, catenary.end)]
         both.append("fixed" not in kinds)
         if kinds == ["weights", "weights"] and not given:
@@ -126,7 +126,7 @@ def termination_faults(catenary: Catenary) -> Iterator[str]:
     if given and not any(both):
         yield "midpoint has no effect where an end of each wire is fixed; leave it out, or tension both ends"
     if catenary.tension_loss and all(
-        end.of(wire).kind == "fixed" for end in (catenary.begin, catenary.end) for wire in _wires(catenary)
+        end.of(wire).kind == "fixed" for end in (catenary.begin, catenary.end) for wire in wires_with_ends(catenary)
     ):
         yield "tension_loss has no effect between fixed ends; leave it out"
     yield from _faults_of_friction(catenary)
@@ -157,7 +157,7 @@ def _faults_of_midpoint(catenary: Catenary) -> Iterator[str]:
 def _faults_of_friction(catenary: Catenary) -> Iterator[str]:
     """Efficiency and losses that leave a wire too little tension."""
     x = catenary.support_positions
-    for wire in _wires(catenary):
+    for wire in wires_with_ends(catenary):
         least = float(tension_shares(catenary, wire, (x[1:] + x[:-1]) / 2).min())
         if least < _LEAST:
             yield (

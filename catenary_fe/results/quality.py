@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, Line
+from catenary_fe.layout.terminations import WireField
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 
@@ -210,20 +211,34 @@ def _tension_drift(run: Run) -> Iterator[Check]:
     """Weights keep the tension of contact and messenger wires, whatever happens between the supports.
 
     A passing pantograph changes the mean tension of a span by less than 1 %. Stitch wires, which no weight
-    keeps, change by 6 % and are not judged.
+    keeps, change by 6 % and are not judged; nor are wires with two fixed ends, whose tension is an outcome.
     """
-    if "tension_change" in run.data:
-        names = [str(name) for name in run.data["wire"].values if not str(name).startswith("stitch")]
-        changes = run.data["tension_change"].values[: len(names)]
-        wire, reading = np.unravel_index(changes.argmax(), changes.shape)
+    if "tension_change" not in run.data:
+        return
+    names = [str(name) for name in run.data["wire"].values]
+    judged = [n for n, name in enumerate(names) if _keeps_tension(name, run.catenary)]
+    if judged:
+        changes = run.data["tension_change"].values[judged]
+        row, reading = np.unravel_index(changes.argmax(), changes.shape)
+        wire = judged[int(row)]
         span = int(run.data["tension_span"].values[wire, reading])
         text = (
             f"change of the {names[wire].replace('_', ' ')}'s tension in span {span} since the start, at"
             f" {float(run.data['tension_time'].values[reading]):.2f} s; look for what holds the wire along"
             " the track there"
         )
-        share = 100 * float(changes[wire, reading])
+        share = 100 * float(changes[row, reading])
         yield Check("tension drift", share, "%", "at most", 100 * DRIFT, text)
+
+
+def _keeps_tension(name: str, catenary: Catenary) -> bool:
+    """Whether weights or a spring keep the tension of a wire, by its name in the results."""
+    if "stitch_wire" in name:
+        return False
+    number = int(name.split("_")[1]) if name.startswith("section_") else 1
+    section = catenary.sections[number - 1] if isinstance(catenary, Line) else catenary
+    wire: WireField = "messenger_wire" if name.endswith("messenger_wire") else "contact_wire"
+    return any(end.of(wire).kind != "fixed" for end in (section.begin, section.end))
 
 
 def _mesh(run: Run) -> dict[str, float]:

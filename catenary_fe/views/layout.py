@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from catenary_fe.layout import AnyPantograph, Catenary, Panhead
 from catenary_fe.layout.arguments import checked, number
+from catenary_fe.layout.terminations import midpoint_place, wires_with_ends
 from catenary_fe.statics import LineShape, Shape
 from catenary_fe.views import stretch, style
 
@@ -62,6 +63,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     _draw_droppers(ax, part, lines, stretch.upper_wires(catenary, shape))
     _draw_supports(ax, part, lines, low)
     _draw_equipment(ax, part, lines)
+    _draw_ends(ax, part)
     scale = "to scale"
     if to_scale:
         ax.set_aspect("equal")
@@ -119,6 +121,34 @@ def _draw_equipment(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line]) 
         if part.is_close and item.name:
             place = (middle, float(wire.height(x)[4]))
             style.annotate(ax, item.name, place, (0, -6), ha="center", va="top")
+
+
+_ENDS = {  # marker, and whether it is filled
+    "fixed end": ("s", "full"), "end on weights": ("s", "none"), "end on a spring": ("D", "none"),
+    "midpoint anchor": ("X", "full"),
+}  # fmt: skip
+
+
+def _draw_ends(ax: Axes, part: stretch.Stretch) -> None:
+    """Where wires are held and tensioned along the track, each kind named once."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    kinds = {"fixed": "fixed end", "weights": "end on weights", "spring": "end on a spring"}
+    for _, section, begin in stretch.sections_of(part.catenary):
+        supports = section.support_positions
+        heights = {"contact_wire": section.contact_wire_heights, "messenger_wire": section.messenger_support_heights}
+        for wire in wires_with_ends(section):
+            for i, end in ((0, section.begin.of(wire)), (-1, section.end.of(wire))):
+                at = begin + float(supports[i]), float(heights[wire][i])
+                found.setdefault(kinds[end.kind], []).append(at)
+            place = midpoint_place(section, wire)
+            if place is not None:
+                at = begin + place, float(np.interp(place, supports, heights[wire]))
+                found.setdefault("midpoint anchor", []).append(at)
+    for kind, (marker, fill) in _ENDS.items():
+        shown = [at for at in found.get(kind, ()) if part.start <= at[0] <= part.end]
+        if shown:
+            x, z = zip(*shown, strict=True)
+            ax.plot(x, z, marker, color=style.SUPPORT, markersize=5, fillstyle=fill, label=kind)
 
 
 def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:

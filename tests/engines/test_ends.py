@@ -5,11 +5,14 @@ import pytest
 from scipy.optimize import brentq
 
 import catenary_fe as cf
+from catenary_fe.layout.terminations import slowest_contact_wire
+from catenary_fe.statics.loaded import LoadedLine
 from catenary_fe.statics.newton import solve_loaded
 from tests.conftest import LAYOUTS
 
 SPEED = 250 / 3.6
 FIXED, WEIGHTS = cf.SectionEnd(kind="fixed"), cf.SectionEnd(kind="weights")
+SPRING = cf.SectionEnd(kind="spring", stiffness=2e4)
 
 
 def section(spans: int = 6, name: str = "en50318_2002", **others: object) -> cf.Catenary:
@@ -166,6 +169,12 @@ def test_weights_that_move_slowly_hold_the_end_in_a_run(pantograph: cf.Pantograp
         ({"begin": WEIGHTS, "midpoint": 1}, "must be a support inside the section, 2 to 4"),
         ({"begin": WEIGHTS, "midpoint": 9}, "must be a support inside the section, 2 to 4"),
         ({"end": FIXED, "tension_loss": 0.01}, "no effect between fixed ends"),
+        ({"begin": WEIGHTS, "midpoint_position": 240.0}, "outside the section; it counts"),
+        ({"begin": WEIGHTS, "midpoint_position": 30.005}, "from a dropper or support"),
+        ({"begin": WEIGHTS, "midpoint": 3, "midpoint_position": 90.0}, "give one of them"),
+        ({"midpoint_position": 90.0}, "midpoint has no effect"),
+        ({"begin": SPRING, "end": SPRING, "tension_loss": 0.01}, "has no direction"),
+        ({"end": cf.SectionEnd(kind="weights", efficiency=0.4)}, "leave it 40 % of its tension"),
     ],
 )
 def test_ends_that_do_not_go_together(others: dict, words: str) -> None:
@@ -180,8 +189,72 @@ def test_ends_that_do_not_go_together(others: dict, words: str) -> None:
         ({"kind": "weights", "stiffness": 1e3}, "nothing else has one"),
         ({"kind": "fixed", "ratio": 3.0}, "ratio has no effect"),
         ({"kind": "fixed", "efficiency": 0.9}, "efficiency has no effect"),
+        ({"kind": "weights", "ratio": 3.0, "contact_wire": FIXED, "messenger_wire": FIXED}, "ratio has no eff"),
     ],
 )
 def test_terminations_of_no_kind(kind: dict, words: str) -> None:
     with pytest.raises(cf.InputError, match=words):
         cf.SectionEnd(**kind)
+
+
+def test_a_section_held_within_a_span_is_its_own_mirror_image() -> None:
+    """Static answers, near the ends too, to rounding and to what leaving out the line far away does."""
+    line = section(5, begin=WEIGHTS, end=WEIGHTS, midpoint_position=150.0)
+    assert line.mirrored() == line.replace(evaluated_spans=line.mirrored().evaluated_spans)
+    x = np.array([10.0, 62.0, 90.0, 147.0])
+    found = cf.elasticity(cf.find_form(line), positions=np.concatenate([x, 300.0 - x]), force=200.0).uplift
+    assert found[:4] == pytest.approx(found[:3:-1], rel=1e-6)
+    aside = line.replace(midpoint_position=100.0)
+    assert aside.mirrored().midpoint_position == pytest.approx(200.0)
+
+
+@pytest.mark.parametrize("ends", [{}, {"begin": FIXED, "end": FIXED}, {"end": SPRING}])
+def test_static_answers_of_the_mirror_image(ends: dict) -> None:
+    """Near both ends, corrected part by part: the same as with Newton's method, and the mirror image."""
+    line = section(6, **ends)
+    x = np.array([10.0, 62.0, 90.0])
+    ours = cf.elasticity(cf.find_form(line), positions=x, force=200.0).uplift
+    image = cf.find_form(line.mirrored())
+    theirs = cf.elasticity(image, positions=360.0 - x, force=200.0).uplift[::-1]
+    assert theirs == pytest.approx(ours, rel=4e-4)
+    exact = LoadedLine(image)
+    for place, lift in zip(360.0 - x, theirs, strict=True):
+        row = exact.load([place], [1.0])
+        assert lift == pytest.approx(float(row @ exact.solve([place], [200.0])), rel=4e-4)
+
+
+def test_friction_falls_from_each_device_to_where_the_wire_is_held() -> None:
+    """A messenger wire that is fixed at its begin loses all the way to it, past the midpoint of the other."""
+    pulled = cf.SectionEnd(kind="weights", efficiency=0.96)
+    half = cf.SectionEnd(kind="weights", messenger_wire=cf.Termination(kind="fixed"))
+    line = section(5, begin=half, end=pulled, midpoint_position=150.0, tension_loss=0.01)
+    assert line.mirrored().mirrored() == line
+    system = cf.find_form(line).system
+    contact, messenger = system.tensions(np.zeros(system.dof.size))
+    kept = 0.99 ** np.arange(5)
+    for tension, wire, shares in (
+        (contact, system.wires[0], [1.0, 0.99, 0.96 * 0.99**2, 0.96 * 0.99, 0.96]),
+        (messenger, system.wires[1], 0.96 * kept[::-1]),
+    ):
+        nominal = (line.contact_wire if wire.contact else line.messenger_wire).tension
+        at = np.searchsorted(wire.x, 60.0 * np.arange(5) + [20.0, 20.0, 40.0, 20.0, 20.0])
+        assert tension[at] == pytest.approx(nominal * np.array(shares), rel=2e-3)
+    along = [system.dof[2 * system.axes * (w.first + w.x.searchsorted(150.0 - 1e-6))] for w in system.wires]
+    assert (along[0] < 0, along[1] < 0) == (True, False)  # the anchor holds the contact wire alone
+
+
+def test_friction_lowers_wave_speed_and_the_pull_of_arms() -> None:
+    line = section(6, "re330", begin=WEIGHTS, end=cf.SectionEnd(kind="weights", efficiency=0.9), midpoint=2)
+    full = line.replace(end=WEIGHTS)
+    ratio = slowest_contact_wire(line).wave_speed / slowest_contact_wire(full).wave_speed
+    assert ratio == pytest.approx(np.sqrt(0.9), rel=1e-12)
+    assert line.lateral_pulls[2:-1] == pytest.approx(0.9 * full.lateral_pulls[2:-1], rel=1e-12)
+    less, more = (-cf.find_form(each).steady_arm_lateral_forces[2:-1] for each in (line, full))
+    by_hand = (full.lateral_pulls - line.lateral_pulls)[2:-1]
+    assert more - less == pytest.approx(by_hand, rel=0.025)  # 2 % of it are in how the droppers lean
+
+
+def test_the_tension_of_fixed_wires_is_not_judged(pantograph: cf.Pantograph) -> None:
+    for ends, judged in (({}, True), ({"begin": FIXED, "end": FIXED}, False)):
+        run = cf.simulate(cf.find_form(section(4, **ends)), [pantograph], speed=SPEED, method="linearised")
+        assert ("tension drift" in {check.name for check in run.checks}) == (judged and "wire" in run.data)

@@ -108,7 +108,7 @@ LAYOUT: dict[str, Any] = {
     "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
     "cant_base": 1.1, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
-    "midpoint": 2, "tension_loss": 0.01,
+    "midpoint": 2, "midpoint_position": 35.0, "tension_loss": 0.01,
 } | {
     f"{end}{wire}.{key}": value
     for end, kind in (("begin", "weights"), ("end", "fixed"))
@@ -253,7 +253,7 @@ REFUSED |= {
     for wire in ("", ".contact_wire", ".messenger_wire")
     for key in ("kind", "stiffness", "ratio", "efficiency")
     if ((end, wire) != ("end", "") and key != "kind") or end == "begin" or (wire, key) == ("", "stiffness")
-} | {"midpoint": "one end is fixed"}
+} | {"midpoint": "one end is fixed", "midpoint_position": "likewise"}
 
 
 def base_of(place: str) -> str:
@@ -433,6 +433,7 @@ SECTION: dict[str, Any] = {
     "begin": {"kind": "weights"},
     "end": {"kind": "fixed"},
     "midpoint": 3,
+    "midpoint_position": 75.0,
     "equipment": [{"x": 22.0, "mass": 9.0}],
     "wear": [{"span": 2, "area_left": 0.9}],
     "overlap": {"spans": 4, "lift": 0.06},
@@ -458,7 +459,7 @@ def test_a_key_of_a_further_section_acts_there_or_is_refused(key):
     before = line_of(record)
     assert isinstance(before, cf.Line)
     record["further_sections"][0][key] = SECTION[key]
-    if key in ("begin", "midpoint", "curve_radius"):  # each by itself does not fit
+    if key in ("begin", "midpoint", "midpoint_position", "curve_radius"):  # each by itself does not fit
         with pytest.raises(cf.InputError, match=r"weights at both ends|midpoint has no|curve_radius differs"):
             line_of(record)
         return
