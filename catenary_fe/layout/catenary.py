@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, wraps
-from math import tan
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -14,9 +13,9 @@ from pydantic import Field, model_validator
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
+from catenary_fe.layout.images import in_the_plane, mirror_image
 from catenary_fe.layout.installed import Wear, changes_of, designed_spans
 from catenary_fe.layout.parameters import (
-    GRAVITY,
     NonEmpty,
     NonNegative,
     Number,
@@ -25,7 +24,7 @@ from catenary_fe.layout.parameters import (
     Text,
     refuse,
 )
-from catenary_fe.layout.parts import Dropper, SectionEnd, Span, SteadyArm, StitchWire, Support, Wire
+from catenary_fe.layout.parts import Dropper, SectionEnd, Span, StitchWire, Support, Wire
 from catenary_fe.layout.rules import catenary_faults
 from catenary_fe.layout.terminations import Loss, lateral_pulls
 from catenary_fe.layout.track import messenger_staggers
@@ -317,10 +316,10 @@ class Catenary(Parameters):
     @_fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
-        found: NDArray[np.int64] = np.array(self._wires_held(), dtype=np.int64)[self.hanging]
+        found: NDArray[np.int64] = np.array(self.wires_held(), dtype=np.int64)[self.hanging]
         return found
 
-    def _wires_held(self) -> list[int]:
+    def wires_held(self) -> list[int]:
         """Number of the contact wire, from 0, of every dropper of the design."""
         wires, designed = len(self.contact_wire_offsets), [d for span in self.spans for d in span.droppers]
         return [(d.contact_wire - 1) if d.contact_wire else i % wires for i, d in enumerate(designed)]
@@ -368,21 +367,7 @@ class Catenary(Parameters):
 
         Raises InputError for a link so short, or pulled so hard, that no spring can stand for it.
         """
-        if not self.is_spatial:
-            return self
-        supports = tuple(
-            s.replace(
-                stagger=0.0,
-                messenger_stagger=0.0,
-                cant=0.0,
-                messenger_lateral_stiffness=None,
-                messenger_lateral_damping=0.0,
-                steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
-            )
-            for i, (s, pull) in enumerate(zip(self.supports, self.lateral_pulls, strict=True), start=1)
-        )
-        spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in self.spans)
-        return self.replace(spans=spans, supports=supports, spatial=False)
+        return in_the_plane(self) if self.is_spatial else self
 
     @property
     def spans_to_evaluate(self) -> tuple[int, ...]:
@@ -396,53 +381,4 @@ class Catenary(Parameters):
 
     def mirrored(self) -> Self:
         """The mirror image: x runs the other way, left stays left."""
-        wires = iter(self._wires_held())
-        spans = []
-        for span in self.spans:
-            images = [
-                d.replace(
-                    position=span.length - d.position,
-                    clamp_shift=-d.clamp_shift,
-                    contact_wire=next(wires) + 1 if self.contact_wire_spacing else None,
-                )
-                for d in span.droppers
-            ]
-            spans.append(_turned(span).replace(droppers=tuple(reversed(images))))
-        n = len(self.spans)
-        evaluated = tuple(n + 1 - i for i in self.evaluated_spans) if self.evaluated_spans else None
-        return self.replace(
-            spans=tuple(reversed(spans)),
-            supports=self.supports[::-1],
-            begin=self.end,
-            end=self.begin,
-            midpoint=self.midpoint and n + 2 - self.midpoint,
-            midpoint_position=None
-            if self.midpoint_position is None
-            else self.length - self.midpoint_position,
-            equipment=tuple(item.mirrored(self) for item in self.equipment),
-            wear=tuple(wear.mirrored(self) for wear in self.wear),
-            evaluated_spans=evaluated,
-        )
-
-
-def _turned(span: Span) -> Span:
-    """The span with its track seen from its other end."""
-    if span.curve_radius_end is None:
-        return span
-    return span.replace(curve_radius=span.curve_radius_end, curve_radius_end=span.curve_radius or 0.0)
-
-
-def _arm_in_the_plane(arm: SteadyArm, pull: float, support: int) -> SteadyArm:
-    if arm.length is None:
-        return arm
-    force = pull * tan(arm.inclination or 0.0) - GRAVITY * (arm.hanging_mass - arm.tip_mass)
-    try:
-        return SteadyArm(
-            stiffness=pull / arm.length,
-            mass=arm.tip_mass,
-            holds_design_height=arm.holds_height,
-            preload=0.0 if arm.holds_height else force,
-        )
-    except InputError as error:
-        where = f"support {support}: the steady arm as a vertical spring of pull over length"
-        raise InputError(*(f"{where}: {line}" for line in error.problems)) from None
+        return mirror_image(self)

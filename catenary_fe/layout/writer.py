@@ -15,8 +15,9 @@ from pydantic import ValidationError
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.catenary import Catenary
+from catenary_fe.layout.entries import SteadyArmEntry
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.files import LayoutFile, SectionEntry, SteadyArmEntry
+from catenary_fe.layout.files import LayoutFile, SectionEntry
 from catenary_fe.layout.line import Line, Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
