@@ -320,3 +320,23 @@ def test_a_line_of_sections():
     assert moved[0] > 10
     assert moved[1] < 1e-6
     assert "1 dropper missing, 1 range of worn contact wire" in shape.lengths_note
+
+
+def test_elements_of_a_worn_wire():
+    """Mass and EA with the area, EI with its square; the tension stays; half an element counts by half."""
+    stiff = CONTACT.replace(bending_stiffness=150.0)
+    worn = line(contact_wire=stiff, wear=[cf.Wear(begin=60.0, end=85.4, area_left=0.7)])
+    shape = cf.find_form(worn)
+    now, new = shape.system, cf.find_form(worn.as_designed()).system
+    x = shape.mesh.wires[0].x
+    inside = np.flatnonzero((x[:-1] >= 60.0) & (x[1:] <= 85.4))
+    assert inside.size > 10
+    for cables, power in (("axial_stiffness", 1), ("bending_stiffness", 2)):
+        ratio = getattr(now.cables, cables)[inside] / getattr(new.cables, cables)[inside]
+        assert ratio == pytest.approx(np.full(inside.size, 0.7**power))
+    n = x.size - 1
+    lost = (new.mass_per_length[:n] - now.mass_per_length[:n]) @ np.diff(x)
+    assert lost == pytest.approx(0.3 * 25.4 * stiff.mass_per_length, rel=1e-9)
+    held = -(now.cables.axial_stiffness * now.cables.rest_strain)[:n]
+    assert held == pytest.approx(np.full(n, CONTACT.tension))
+    assert (now.mass_per_length[n:] == new.mass_per_length[n:]).all()
