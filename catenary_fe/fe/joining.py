@@ -101,7 +101,7 @@ class Joint:
             balance=np.concatenate(self.wires(balances)),
         )
 
-    def system(self, parts: Sequence[System], base_line: BaseLine) -> System:
+    def joined(self, parts: Sequence[System], base_line: BaseLine) -> System:
         """The sections' systems as one; nothing but a pantograph connects them."""
         width = 2 * parts[0].axes
         sizes = [np.array([width * wire.x.size for wire in part.wires]) for part in parts]

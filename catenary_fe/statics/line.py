@@ -42,7 +42,7 @@ class LineShape(Shape):
         """The assembled line, from which every engine starts."""
         line = self.catenary
         base = BaseLine(line.support_positions, line.contact_wire_heights - line.contact_wire_height)
-        return self.joint.system([shape.system for shape in self.sections], base)
+        return self.joint.joined([shape.system for shape in self.sections], base)
 
     def dropper_schedule(self) -> list[DropperRow]:
         """The table that a crew cuts and hangs the droppers by, section by section."""
