@@ -126,7 +126,9 @@ def termination_faults(catenary: Catenary) -> Iterator[str]:
     if given and not any(both):
         yield "midpoint has no effect where an end of each wire is fixed; leave it out, or tension both ends"
     if catenary.tension_loss and all(
-        end.of(wire).kind == "fixed" for end in (catenary.begin, catenary.end) for wire in wires_with_ends(catenary)
+        end.of(wire).kind == "fixed"
+        for end in (catenary.begin, catenary.end)
+        for wire in wires_with_ends(catenary)
     ):
         yield "tension_loss has no effect between fixed ends; leave it out"
     yield from _faults_of_friction(catenary)

@@ -128,7 +128,10 @@ def _draw_ends(ax: Axes, part: stretch.Stretch) -> None:
     kinds = {"fixed": "fixed end", "weights": "end on weights", "spring": "end on a spring"}
     for _, section, begin in stretch.sections_of(part.catenary):
         supports = section.support_positions
-        heights = {"contact_wire": section.contact_wire_heights, "messenger_wire": section.messenger_support_heights}
+        heights = {
+            "contact_wire": section.contact_wire_heights,
+            "messenger_wire": section.messenger_support_heights,
+        }
         for wire in wires_with_ends(section):
             for i, end in ((0, section.begin.of(wire)), (-1, section.end.of(wire))):
                 at = begin + float(supports[i]), float(heights[wire][i])

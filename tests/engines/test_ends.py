@@ -189,7 +189,10 @@ def test_ends_that_do_not_go_together(others: dict, words: str) -> None:
         ({"kind": "weights", "stiffness": 1e3}, "nothing else has one"),
         ({"kind": "fixed", "ratio": 3.0}, "ratio has no effect"),
         ({"kind": "fixed", "efficiency": 0.9}, "efficiency has no effect"),
-        ({"kind": "weights", "ratio": 3.0, "contact_wire": FIXED, "messenger_wire": FIXED}, "ratio has no eff"),
+        (
+            {"kind": "weights", "ratio": 3.0, "contact_wire": FIXED, "messenger_wire": FIXED},
+            "ratio has no eff",
+        ),
     ],
 )
 def test_terminations_of_no_kind(kind: dict, words: str) -> None:
