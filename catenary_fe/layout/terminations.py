@@ -151,8 +151,8 @@ def _faults_of_midpoint(catenary: Catenary) -> Iterator[str]:
     apart = float(np.abs(stations - place).min())
     if _BESIDE < apart < CLOSEST:
         yield (
-            f"midpoint_position = {place:.6g} m is {1e3 * apart:.2g} mm from a dropper or support; place it there,"
-            f" or at least {CLOSEST:g} m away"
+            f"midpoint_position = {place:.6g} m is {1e3 * apart:.2g} mm from a dropper or support; place it"
+            f" there, or at least {CLOSEST:g} m away"
         )
 
 
