@@ -94,9 +94,10 @@ class Equipment(Parameters):
 
 
 def stations(catenary: Catenary, wire: str) -> list[float]:
-    """[m] where equipment needs nodes in the mesh of a wire, by its name."""
+    """[m] where equipment, and a midpoint anchor, need nodes in the mesh of a wire, by its name."""
     found = [x for item in catenary.equipment if item.wire == wire for x in item.stations(catenary)]
-    return found if catenary.midpoint_position is None else [*found, catenary.midpoint_position]
+    held = catenary.midpoint_position
+    return found if held is None or wire == "stitch wire" else [*found, held]
 
 
 def equipment_faults(catenary: Catenary) -> Iterator[str]:
@@ -135,10 +136,12 @@ def _too_close(catenary: Catenary, item: Equipment) -> Iterator[str]:
     import numpy as np
 
     fixed = np.concatenate([catenary.support_positions, catenary.dropper_positions])
+    if catenary.midpoint_position is not None:
+        fixed = np.append(fixed, catenary.midpoint_position)
     for x in item.stations(catenary):
         near = float(fixed[np.abs(fixed - x).argmin()])
         if 1e-6 < abs(near - x) < CLOSEST:
             yield (
-                f"its end or middle at {x:.6g} m lies less than {CLOSEST:g} m from the clamp or support at"
-                f" {near:.6g} m; move it there, or further away"
+                f"its end or middle at {x:.6g} m lies less than {CLOSEST:g} m from the clamp, anchor or support"
+                f" at {near:.6g} m; move it there, or further away"
             )
