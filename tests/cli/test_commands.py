@@ -49,7 +49,7 @@ def test_form(capsys, layout, tmp_path):
     table = (tmp_path / "out" / "dropper_schedule.csv").read_text().splitlines()
     assert len(table) == 37
     cut = f"{rows[9]['cut_length_mm']},{rows[9]['length_m']:.4f},{rows[9]['installed_length_m']:.4f}"
-    assert table[10].startswith(f"2,2,3,1,65.000,5.000,{cut},{rows[9]['force_N']:.1f},5.300,")
+    assert table[10].startswith(f"1,2,2,3,1,65.000,5.000,{cut},{rows[9]['force_N']:.1f},5.300,")
     assert table[10].endswith(",messenger wire,1")
     code, out, _ = call(capsys, "form", layout)
     assert "dropper schedule" in out
