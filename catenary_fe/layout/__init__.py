@@ -9,8 +9,9 @@ from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted,
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Line, Overlap, join_sections, read_catenary
+from catenary_fe.layout.line import Line, join_sections, read_catenary
 from catenary_fe.layout.measured import MeasuredWire, read_measured
+from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.pantograph import (
     AerodynamicForce,
     AnyPantograph,

@@ -148,6 +148,8 @@ def build_line(
     Raises InputError for a type without a dropper rule, and for a span that the rule does not know.
     """
     kind = library.line(line) if isinstance(line, str) else line
+    if not isinstance(kind, Line):
+        raise InputError(f"line = {shorten(line)}: must be a line of the library, or its name")
     lengths = numbers("span_lengths", span_lengths)
     if lengths.ndim != 1 or not lengths.size:
         raise InputError(

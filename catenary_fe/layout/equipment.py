@@ -142,6 +142,6 @@ def _too_close(catenary: Catenary, item: Equipment) -> Iterator[str]:
         near = float(fixed[np.abs(fixed - x).argmin()])
         if 1e-6 < abs(near - x) < CLOSEST:
             yield (
-                f"its end or middle at {x:.6g} m lies less than {CLOSEST:g} m from the clamp, anchor or support"
-                f" at {near:.6g} m; move it there, or further away"
+                f"its end or middle at {x:.6g} m lies less than {CLOSEST:g} m from the clamp, anchor or"
+                f" support at {near:.6g} m; move it there, or further away"
             )

@@ -22,7 +22,8 @@ from catenary_fe.layout.entries import (
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Overlap, join_sections
+from catenary_fe.layout.line import join_sections
+from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
 from catenary_fe.layout.parameters import (
     Lateral,

@@ -13,7 +13,8 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.builders import LinePattern, stitch_wire_length
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.errors import InputError, counted
-from catenary_fe.layout.line import Overlap, join_sections
+from catenary_fe.layout.line import join_sections
+from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support
 from catenary_fe.layout.tables import (
     DROPPER_COLUMNS,

@@ -18,7 +18,8 @@ from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.entries import SteadyArmEntry
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.files import LayoutFile, SectionEntry
-from catenary_fe.layout.line import Line, Overlap
+from catenary_fe.layout.line import Line
+from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
 from catenary_fe.layout.variation import unit_of

@@ -121,6 +121,9 @@ def names(kind: str) -> list[str]:
     return list(_records(kind))
 
 
+_SHOWN = 10  # names of a kind in an error
+
+
 @cache
 def _records(kind: str) -> Mapping[str, Mapping[str, Any]]:
     text = resources.files(__name__).joinpath(f"{kind}.toml").read_text(encoding="utf-8")
@@ -135,7 +138,10 @@ def _find(kind: str, name: str) -> dict[str, Any]:
     if known:
         return {**records[known], "name": known}
     near = [folded[n] for n in difflib.get_close_matches(name.casefold(), folded, n=3, cutoff=0.4)]
-    listed = ", ".join(f"'{n}'" for n in near or records)
+    shown = near or list(records)[:_SHOWN]
+    listed = ", ".join(f"'{n}'" for n in shown)
+    if not near and len(records) > _SHOWN:
+        listed += f" and {len(records) - _SHOWN} more"
     raise InputError(
         f"no {kind} {shorten(name)} in the library; {'near' if near else 'known'} names: {listed}"
     )

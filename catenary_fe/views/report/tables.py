@@ -15,7 +15,7 @@ from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governi
 from catenary_fe.results.export import cell, common_name
 from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
 from catenary_fe.results.signal import CUT_OFF, FilterKind
-from catenary_fe.statics import Shape
+from catenary_fe.statics import LineShape, Shape
 
 
 @dataclass(frozen=True)
@@ -121,8 +121,10 @@ def slack_table(run: Run) -> Table:
 def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
     """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
     caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
-    rows = [row.as_dict() for row in shape.dropper_schedule() if spans is None or row.span in spans]
+    places = zip(shape.dropper_schedule(), shape.catenary.dropper_spans.tolist(), strict=True)
+    rows = [row.as_dict() for row, span in places if spans is None or span in spans]
     columns = {
+        **({"section": "section"} if isinstance(shape, LineShape) else {}),
         "span": "span", "dropper": "dropper", "chainage_m": "chainage (m)",
         "position_m": "in the span at (m)", "length_m": "length (m)", "installed_length_m": "installed (m)",
         "force_N": "force (N)", "contact_wire_height_error_mm": "height error (mm)",
