@@ -16,6 +16,7 @@ from catenary_fe.views import stretch, style
 
 _BELOW = 0.75  # [m] of room under the contact wire, for dimensions
 _CURVE = "#7b4fa3"
+_SAME_PLACE = 0.02  # [m]
 _HEAD = "#dfe7ec"
 
 
@@ -164,6 +165,7 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
         _dimension(ax, (a, low + 0.2), (b, low + 0.2), f"span {n}: {span.length:g} m")
     at = part.catenary.dropper_positions
     stations = np.union1d(x, at[part.inside(at)])
+    stations = stations[np.diff(stations, prepend=-np.inf) > _SAME_PLACE]  # of two lines in an overlap
     distances = [f"{round(b - a, 3):g}" for a, b in pairwise(stations)]
     if style.label_row(ax, (stations[:-1] + stations[1:]) / 2, low + 0.53, distances):
         ax.vlines(stations, low + 0.49, low + 0.59, color=style.DROPPER, linewidth=0.6)
