@@ -207,7 +207,7 @@ def example_of(table: Table, key: Key, tables: list[Table], examples: dict[tuple
     for other in tables:
         if key in other.keys and (found := examples.get((other.name, key.name))):
             return found
-    return ""
+    return f"[{key.name}]" if inner else ""
 
 
 class FileKeys(Directive):

@@ -97,7 +97,7 @@ class Catenary(Parameters):
     midpoint_position: Number | None = None
     """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
-    """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    """[1] share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()

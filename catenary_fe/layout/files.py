@@ -79,8 +79,11 @@ class SectionEntry(Parameters):
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
         own = (self.model_fields_set | {"equipment", "wear"}) - {"overlap", "count"}
+        midpoints = {"midpoint", "midpoint_position"}
+        others = dict.fromkeys(midpoints - own) if midpoints & own else {}
         return first.replace(
             **{name: getattr(self, name) for name in own},
+            **others,
             further_sections=(),
             overlap=None,
             evaluated_spans=None,
@@ -131,7 +134,7 @@ class LayoutFile(Parameters):
     midpoint_position: Number | None = None
     """[m] from the first support to a midpoint anchor within a span, instead"""
     tension_loss: Loss = 0.0
-    """share of a wire's tension that friction takes at each support on the way from weights or spring"""
+    """[1] share of a wire's tension that friction takes at each support on the way from weights or spring"""
     equipment: tuple[Equipment, ...] = ()
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()

@@ -203,9 +203,9 @@ def join_sections(
 
     Raises InputError where two sections do not fit in their overlap.
     """
-    for name, items, kind in (("sections", sections, Catenary), ("overlaps", overlaps, Overlap)):
+    for what, items, kind in (("sections", sections, Catenary), ("overlaps", overlaps, Overlap)):
         if not isinstance(items, list | tuple) or not all(isinstance(item, kind) for item in items):
-            raise InputError(f"{name} = {shorten(items)}: must be a list of {kind.__name__} objects")
+            raise InputError(f"{what} = {shorten(items)}: must be a list of {kind.__name__} objects")
     made = list(sections)
     if not made:
         raise InputError("sections is empty; a line has one at least")

@@ -74,9 +74,9 @@ class Termination(Parameters):
     stiffness: Positive | None = None
     """[N/m] of a spring, along the track"""
     ratio: Positive | None = None
-    """of weights: how far they move for each metre of the wire, 3 or 5; unset: their inertia is left out"""
+    """[m/m] of weights: how far they move for the wire, 3 or 5; unset: their inertia is left out"""
     efficiency: Share = 1.0
-    """of weights: share of the nominal tension that friction in the device leaves in the wire"""
+    """[1] of weights: share of the nominal tension that friction in the device leaves in the wire"""
 
     @model_validator(mode="after")
     def _of_its_kind(self) -> Self:

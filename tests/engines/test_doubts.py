@@ -1,6 +1,7 @@
 """When a linearised run doubts itself: the rule, its words, and that both methods agree elsewhere."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,8 +27,14 @@ GAPS = Gaps(
 )
 
 
+@cache
+def system_of(line):
+    return cf.find_form(line).system
+
+
 def said(line, *newtons, gaps=GAPS):
-    return tension_doubts(line, gaps, np.array(newtons, dtype=float), 100 * np.arange(len(newtons)), STEP)
+    changes, steps = np.array(newtons, dtype=float), 100 * np.arange(len(newtons))
+    return tension_doubts(system_of(line), line.support_positions, gaps, changes, steps, STEP)
 
 
 def test_a_stitch_wire_that_changes_by_9_percent_is_not_worth_a_word(re330):

@@ -63,7 +63,6 @@ def moving(*contacts, damping=0.0):
     ("position", "body", "local"),
     [
         (0.0, 10, 0.0), (0.5, 10, 0.505), (1.0, 11, 0.0), (2.0, 11, 1.01), (6.0, 12, 3.03),
-        (-0.5, 10, -0.505), (7.5, 12, 4.545),
     ],
 )  # fmt: skip
 def test_places_on_a_wire(position, body, local):
@@ -71,6 +70,16 @@ def test_places_on_a_wire(position, body, local):
     contacts.move_to([position], 80.0)
     assert told.set[100, "bodyNumber"] == body
     assert told.set[100, "localPosition"] == pytest.approx([local, 0, 0])
+
+
+def test_beyond_the_ends_of_its_wire_a_contact_does_not_act():
+    touched = contact()
+    told, contacts = moving(touched)
+    for position, on in ((-0.5, False), (0.5, True), (7.5, False), (5.0, True)):
+        contacts.move_to([position], 80.0)
+        assert contacts.meets(touched) is on
+        assert contacts.force(touched) == (120 if on else 0.0)
+    assert told.set[0, "activeConnector"] is True
 
 
 def test_a_contact_moves_from_element_to_element():

@@ -19,7 +19,7 @@ LAYOUTS = sorted((Path(__file__).parents[2] / "models" / "layouts").glob("*.toml
 
 
 def first_spans(path: Path, count: int = 3) -> cf.Catenary:
-    whole = cf.load_catenary(path)
+    whole = cf.load_catenary(path).without_dropper_lengths()  # they are those of the whole line
     return whole.replace(
         spans=whole.spans[:count], supports=whole.supports[: count + 1], evaluated_spans=(2,)
     )

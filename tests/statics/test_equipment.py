@@ -145,7 +145,7 @@ FAULTS = {
     "no such span": ({"mass": 1.0, "span": 9, "position": 3.0}, "span = 9: the line has spans"),
     "beyond the span": ({"mass": 1.0, "span": 2, "position": 60.0}, "lies outside span 2 of 50 m"),
     "over the end": ({"mass": 1.0, "x": 249.5, "length": 2.0}, "reaches from 248.5 to 250.5 m"),
-    "beside a clamp": ({"mass": 1.0, "x": 105.005}, "clamp or support at 105 m; move it there"),
+    "beside a clamp": ({"mass": 1.0, "x": 105.005}, "clamp, anchor or support at 105 m; move it there"),
 }  # fmt: skip
 
 
