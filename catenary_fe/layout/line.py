@@ -225,6 +225,11 @@ def join_sections(
                 )
         if overlap.as_written:
             continue
+        if any(d.length is not None for section in made[n - 1 : n + 1] for d in section.droppers):
+            raise InputError(
+                f"overlap {n}: droppers have lengths, which the rule makes wrong; say as_written ="
+                " true where they are those of the overlap, or leave the lengths out"
+            )
         try:
             side = -1.0 if made[n - 1].supports[-1 - overlap.spans].stagger > 0 else 1.0
             made[n - 1] = run_off(made[n - 1], overlap, side, side)

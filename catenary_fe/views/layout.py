@@ -54,7 +54,7 @@ def _draw(ax: Axes, part: stretch.Stretch, shape: Shape | None, to_scale: bool) 
     catenary = part.catenary
     lines = stretch.hanging_lines(shape, part) if shape else stretch.sketched_lines(catenary, part)
     contact = [line for line in lines if line.name == "contact wire"]
-    low = min(float(line.z.min()) for line in contact) - _BELOW
+    low = min(float(line.z.min()) for line in contact if line.z.size) - _BELOW
     top = float(catenary.messenger_support_heights[part.supports].max())
     top = max([top, *(float(line.z.max()) for line in lines if line.z.size)])
     high = top + (0.1 if to_scale else 0.32) * (top - low)

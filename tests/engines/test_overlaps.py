@@ -205,6 +205,9 @@ def test_sections_that_do_not_fit_are_named() -> None:
         cf.join_sections([part, longer], overlap)
     with pytest.raises(cf.InputError, match="contact_wire_height differs"):
         cf.join_sections([part, part.replace(contact_wire_height=5.5)], overlap)
+    cut = part.with_dropper_lengths(cf.find_form(part).dropper_lengths)
+    with pytest.raises(cf.InputError, match="overlap 1: droppers have lengths"):
+        cf.join_sections([part, cut], overlap)
     with pytest.raises(cf.InputError, match="there must be one between"):
         cf.join_sections([part, part, part], overlap)
     line = cf.join_sections([part, part], overlap)
