@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from catenary_fe.fe.cable import Cables
 from catenary_fe.fe.contact import BaseLine
 from catenary_fe.fe.installation import Installation, WireLine
-from catenary_fe.fe.mesh import Clamps, Mesh, WireMesh
+from catenary_fe.fe.mesh import Clamps, Mesh, MeshSettings, WireMesh, make_mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
+from catenary_fe.layout import Catenary, Line
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -212,3 +213,10 @@ def _springs(parts: Sequence[Springs], shift: Integers, new: Integers) -> Spring
         for name in ("pivot", "length", "stiffness", "damping")
     }
     return replace(parts[0], first=numbers("first"), last=numbers("last"), **others)
+
+
+def mesh_of(catenary: Catenary, settings: MeshSettings) -> Mesh:
+    """The mesh of a line of one section or several, as :func:`make_mesh`."""
+    if not isinstance(catenary, Line):
+        return make_mesh(catenary, settings)
+    return Joint([make_mesh(section, settings) for section in catenary.sections], catenary.begins).mesh()

@@ -17,7 +17,7 @@ _Line = TypeVar("_Line", bound="Catenary")
 
 def in_the_plane(catenary: _Line) -> _Line:
     """See :meth:`Catenary.planar`."""
-    supports = tuple(
+    supports = [
         s.replace(
             stagger=0.0,
             messenger_stagger=0.0,
@@ -27,9 +27,12 @@ def in_the_plane(catenary: _Line) -> _Line:
             steady_arm=s.steady_arm and _arm_in_the_plane(s.steady_arm, abs(float(pull)), i),
         )
         for i, (s, pull) in enumerate(zip(catenary.supports, catenary.lateral_pulls, strict=True), start=1)
-    )
+    ]
+    for end, beside in ((0, 1), (-1, -2)):  # anchors: an arm has no effect there, and is as the others
+        if supports[end].steady_arm and supports[beside].steady_arm:
+            supports[end] = supports[end].replace(steady_arm=supports[beside].steady_arm)
     spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in catenary.spans)
-    return catenary.replace(spans=spans, supports=supports, spatial=False)
+    return catenary.replace(spans=spans, supports=tuple(supports), spatial=False)
 
 
 def mirror_image(catenary: _Line) -> _Line:

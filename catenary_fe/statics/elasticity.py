@@ -109,10 +109,30 @@ def elasticity(
         x = np.sort(np.atleast_1d(on_the_wire("position", positions, catenary.support_positions)))
     if x.ndim != 1 or not x.size:
         raise InputError(f"elasticity: positions = {shorten(positions)}: must be a list of positions [m]")
-    lifts = LoadedLine(shape).lifts(x, force, progress)
+    lifts = _lifts(shape, x, force, progress)
     supports = catenary.support_positions
     inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
     return Elasticity(position=x, uplift=lifts, force=force, support_position=inside)
+
+
+def _lifts(shape: Shape, x: Floats, force: float, progress: Callable[[float], None] | None) -> Floats:
+    """[m], shape (points,): of the contact wire at places x [m]; of several sections, of the lower one's."""
+    if not isinstance(shape, LineShape):
+        return LoadedLine(shape).lifts(x, force, progress)
+    if shape.has_effect:
+        raise InputError(
+            "elasticity of several sections is that of each by itself, without what with_effect added to the"
+            " line; add it to a section: shape.sections[0].with_effect(...)"
+        )
+    paths, lifts = shape.system.contact_paths, np.empty(x.size)
+    section = np.array([paths[shape.system.served(place)[0]].section for place in x.tolist()])
+    for n in np.unique(section).tolist():
+        mine = np.flatnonzero(section == n)
+        own = x[mine] - shape.catenary.begins[n]
+        lifts[mine] = LoadedLine(shape.sections[n]).lifts(own, force, None)
+        if progress:
+            progress((int(mine[-1]) + 1) / x.size)
+    return lifts
 
 
 def _points(shape: Shape, spans: Sequence[int], count: int) -> Floats:

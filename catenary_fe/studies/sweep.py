@@ -22,7 +22,8 @@ import numpy as np
 from catenary_fe.engines.arrays import SLOTS
 from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.fe.mesh import MeshSettings, make_mesh
+from catenary_fe.fe.joining import mesh_of
+from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
 from catenary_fe.layout.arguments import whole
 from catenary_fe.results import Run
@@ -155,7 +156,7 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
     speed = min(case.speed for case in cases)
     steps = int(longest.catenary.length / (speed * settings.time.step)) if speed > 0 else 0
     slots = min(SLOTS, len(cases)) if settings.method == "linearised" else 1
-    mesh = make_mesh(longest.catenary, settings.mesh)
+    mesh = mesh_of(longest.catenary, settings.mesh)
     return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, slots)
 
 

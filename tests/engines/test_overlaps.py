@@ -1,6 +1,7 @@
 """Lines of several tension sections: overlaps by the rule and as written, on all engines."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -170,6 +171,19 @@ def test_mirror_image_of_a_line(line: cf.Line) -> None:
 def test_elasticity_is_that_of_the_lower_wire(shape: cf.Shape) -> None:
     single = cf.elasticity(shape.sections[0], positions=[75.0, 90.0])
     assert cf.elasticity(shape, positions=[75.0, 90.0]).uplift == pytest.approx(single.uplift, rel=1e-3)
+
+
+def test_an_effect_on_the_line_is_not_lost(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
+    def heavier(system):
+        weight = system.distributed(np.full(system.mass_per_length.size, -0.5))
+        return replace(system, force=system.force + weight)
+
+    changed = shape.with_effect(heavier)
+    runs = [cf.simulate(s, [pantograph], speed=SPEED, method="linearised") for s in (shape, changed)]
+    heights = [run.data["wire_height"].values[0].mean() for run in runs]
+    assert heights[1] < heights[0] - 1e-3
+    with pytest.raises(cf.InputError, match="without what with_effect added"):
+        cf.elasticity(changed, positions=[75.0])
 
 
 def test_lateral_distance_and_head(pantograph: cf.Pantograph) -> None:
