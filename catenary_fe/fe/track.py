@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 from catenary_fe.fe.installation import wire_field, wire_kinds
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary
-from catenary_fe.layout.terminations import tension_shares
+from catenary_fe.layout.terminations import shares_at_supports
 from catenary_fe.layout.track import cant_bends, lean
 
 Floats = NDArray[np.float64]
-
-_BESIDE = 1e-6  # [m] beside a support, where the tension steps
 
 
 def node_lean(catenary: Catenary, mesh: Mesh) -> Floats:
@@ -36,9 +34,7 @@ def cant_forces(catenary: Catenary, mesh: Mesh) -> Floats:
         name = wire_field(mesh, number)
         of_wire = name == "contact_wire"
         heights = catenary.contact_wire_heights if of_wire else catenary.messenger_support_heights
-        at = catenary.support_positions
-        beside = [np.clip(at + side, at[0], at[-1]) for side in (-_BESIDE, _BESIDE)]
-        tension = kind.tension * np.mean([tension_shares(catenary, name, x) for x in beside], axis=0)
+        tension = kind.tension * shares_at_supports(catenary, name)
         forces[mesh.first_nodes[number] + wire.supports] += tension * cant_bends(catenary, heights)
     return forces
 

@@ -29,6 +29,8 @@ from catenary_fe.layout.rules import catenary_faults
 from catenary_fe.layout.terminations import Loss, lateral_pulls
 from catenary_fe.layout.track import messenger_staggers
 
+SAME_PLACE = 1e-3  # [m] of masts
+
 
 def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
     """A property that is computed once, an array that nobody can change in place."""
@@ -172,6 +174,10 @@ class Catenary(Parameters):
     def support_positions(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,)."""
         return np.concatenate([[0.0], np.cumsum([span.length for span in self.spans])])
+
+    def supports_at(self, x: ArrayLike) -> NDArray[np.int64]:
+        """Numbers, from 0, of the supports at places x [m] along the line, any shape."""
+        return np.searchsorted(self.support_positions, np.asarray(x, dtype=float) - SAME_PLACE)
 
     @property
     def length(self) -> float:

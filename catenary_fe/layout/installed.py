@@ -12,12 +12,12 @@ from pydantic import Field, model_validator
 
 from catenary_fe.layout.errors import counted
 from catenary_fe.layout.parameters import Number, Parameters
+from catenary_fe.layout.parts import CLOSEST
 
 if TYPE_CHECKING:
     from catenary_fe.layout.catenary import Catenary
     from catenary_fe.layout.parts import Span
 
-CLOSEST = 0.01  # [m] between clamps, as in a design
 MOST_WORN = 0.5  # share that must be left: wires are taken down at 0.7 or 0.8
 _Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=MOST_WORN, le=1.0)]
 

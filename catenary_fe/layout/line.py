@@ -42,12 +42,7 @@ class Line(Catenary):
             return data
         sections = [s if isinstance(s, Catenary) else Catenary.model_validate(s) for s in data["sections"]]
         overlaps = [o if isinstance(o, Overlap) else Overlap.model_validate(o) for o in data["overlaps"]]
-        if len(overlaps) != len(sections) - 1:
-            raise ValueError(
-                f"{counted(len(sections), 'section')} and {counted(len(overlaps), 'overlap')}: there must be"
-                " one between each section and the next"
-            )
-        refuse(_faults(sections, overlaps))
+        refuse(_faults_of_counts(sections, overlaps) or _faults(sections, overlaps))
         spans, supports = _served(sections, overlaps)
         first = min(sections, key=lambda section: section.contact_wire.wave_speed)
         common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
@@ -209,20 +204,11 @@ def join_sections(
     made = list(sections)
     if not made:
         raise InputError("sections is empty; a line has one at least")
-    if len(overlaps) != len(made) - 1:
-        raise InputError(
-            f"{counted(len(made), 'section')} and {counted(len(overlaps), 'overlap')}: there must be one"
-            " between each section and the next"
-        )
+    if faults := _faults_of_counts(made, overlaps):
+        raise InputError(*faults)
     if any(section.is_spatial for section in made):
         made = [section.replace(spatial=True) for section in made]
     for n, overlap in enumerate(overlaps, start=1):
-        for section in made[n - 1 : n + 1]:
-            if overlap.spans >= len(section.spans):
-                raise InputError(
-                    f"overlap {n} of {overlap.spans} spans: {section.name!r} has {len(section.spans)} spans;"
-                    " add spans, or take a shorter overlap"
-                )
         if overlap.as_written:
             continue
         if any(d.length is not None for section in made[n - 1 : n + 1] for d in section.droppers):
@@ -242,6 +228,21 @@ def join_sections(
     )  # fmt: skip
 
 
+def _faults_of_counts(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[str]:
+    """One line for overlaps that are too many, too few, or too long for their sections."""
+    if len(overlaps) != len(sections) - 1:
+        return [
+            f"{counted(len(sections), 'section')} and {counted(len(overlaps), 'overlap')}: there must be one"
+            " between each section and the next"
+        ]
+    return [
+        f"overlap {n} of {overlap.spans} spans: its sections have {len(a.spans)} and {len(b.spans)} spans;"
+        " add spans, or take a shorter overlap"
+        for n, (overlap, (a, b)) in enumerate(zip(overlaps, pairwise(sections), strict=True), start=1)
+        if overlap.spans >= min(len(a.spans), len(b.spans))
+    ]
+
+
 def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[str]:
     """One line for each way in which sections do not fit together."""
     found = []
@@ -258,12 +259,6 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
         found.append("sections: some have a messenger_wire and others none; give all one, or none of them")
     for n, (overlap, (a, b)) in enumerate(zip(overlaps, pairwise(sections), strict=True), start=1):
         shared = overlap.spans
-        if shared >= min(len(a.spans), len(b.spans)):
-            found.append(
-                f"overlap {n} of {shared} spans: its sections have {len(a.spans)} and {len(b.spans)} spans;"
-                " add spans, or take a shorter overlap"
-            )
-            continue
         for i, (one, other) in enumerate(zip(a.spans[-shared:], b.spans[:shared], strict=True), start=1):
             where = f"overlap {n}: shared span {i}"
             if abs(one.length - other.length) > _SAME:

@@ -63,15 +63,21 @@ def tension_shares(catenary: Catenary, wire: WireField, x: ArrayLike) -> Floats:
     return shares
 
 
+def shares_at_supports(catenary: Catenary, wire: WireField) -> Floats:
+    """Shape (spans + 1,): where friction takes tension at a support, the mean of the shares on both sides."""
+    x = catenary.support_positions
+    before, behind = (tension_shares(catenary, wire, x + side) for side in (-_BESIDE, _BESIDE))
+    shares: Floats = (before + behind) / 2
+    return shares
+
+
 def lateral_pulls(catenary: Catenary) -> Floats:
     """[N], shape (spans + 1,): force to the left on the supports, see :attr:`Catenary.lateral_pulls`.
 
     Where friction takes tension at a support, its mean on both sides: what that leaves out is the friction's
     own inclination.
     """
-    x = catenary.support_positions
-    before, behind = (tension_shares(catenary, "contact_wire", x + side) for side in (-_BESIDE, _BESIDE))
-    tension = catenary.contact_wire.tension * (before + behind) / 2
+    tension = catenary.contact_wire.tension * shares_at_supports(catenary, "contact_wire")
     pulls: Floats = tension * len(catenary.contact_wire_offsets) * support_bends(catenary)
     return pulls
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,19 +27,10 @@ class LineShape(Shape):
 
     wires : all contact wires, then all messenger wires, then all stitch wires, each section by section
     sections : the sections' own shapes, whose places count from their own first supports
-    has_effect : whether something was added to the line's system
     """
 
     catenary: Line
     sections: tuple[Shape, ...]
-
-    has_effect: bool = False
-
-    def with_effect(self, effect: Callable[[System], System]) -> Shape:
-        """As of a shape. Statics are those of sections by themselves, which do not see it and say so."""
-        changed = replace(self, has_effect=True)
-        changed.__dict__["system"] = effect(self.system)
-        return changed
 
     @cached_property
     def joint(self) -> Joint:
@@ -80,7 +71,7 @@ def join_shapes(line: Line, shapes: Sequence[Shape]) -> LineShape:
     """The line's shape from those of its sections."""
     joint = Joint([shape.mesh for shape in shapes], line.begins)
     masts = [
-        np.searchsorted(line.support_positions, shape.catenary.support_positions + begin - 1e-3)
+        line.supports_at(shape.catenary.support_positions + begin)
         for shape, begin in zip(shapes, line.begins, strict=True)
     ]
     wires = [

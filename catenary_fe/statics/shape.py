@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -80,6 +80,7 @@ class Shape:
     wires : contact wires (the right one first), messenger wire, stitch wires, as in the mesh
     dropper_forces : [N], shape (droppers,)
     installed_lengths : [m], shape (droppers,), of the loaded droppers
+    has_effect : whether something was added to the system, see :meth:`with_effect`
     """
 
     catenary: Catenary
@@ -89,6 +90,7 @@ class Shape:
     wires: tuple[HangingWire, ...]
     dropper_forces: Floats
     installed_lengths: Floats
+    has_effect: bool = field(default=False, kw_only=True)
 
     @cached_property
     def system(self) -> System:
@@ -101,7 +103,7 @@ class Shape:
         Statics, modes and runs of every engine see it. The shape itself stays as it was installed: what the
         effect does to the line at rest, they find by themselves.
         """
-        changed = replace(self)
+        changed = replace(self, has_effect=True)
         changed.__dict__["system"] = effect(self.system)
         return changed
 

@@ -25,7 +25,6 @@ from catenary_fe.statics import LineShape, Shape
 Floats = NDArray[np.float64]
 Rows = dict[str, tuple[Any, ...]]  # dimensions, values, and of a quantity its unit and name
 _NOTES = 3  # by themselves
-SAME_PLACE = 1e-3  # [m] of masts
 CHECKPOINT_FORM = 5  # rises when what a checkpoint holds changes
 
 
@@ -87,12 +86,11 @@ def make_run(
 
 def _support_uplift(shape: Shape, history: History) -> Floats:
     """[m], shape (supports, times): of the contact wire that is lifted most at each support."""
-    masts = shape.catenary.support_positions
-    uplift = np.full((masts.size, history.time.size), -np.inf)
+    uplift = np.full((len(shape.catenary.supports), history.time.size), -np.inf)
     first = 0
     for wire, stations in zip(shape.contact_wires, shape.mesh.wires, strict=False):
         own = slice(first, first + stations.supports.size)
-        at = np.searchsorted(masts, stations.x[stations.supports] - SAME_PLACE)
+        at = shape.catenary.supports_at(stations.x[stations.supports])
         static = wire.z[stations.supports]
         uplift[at] = np.maximum(uplift[at], history.support_height[own] - static[:, None])
         first = own.stop

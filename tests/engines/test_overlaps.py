@@ -202,7 +202,7 @@ def test_lateral_distance_and_head(pantograph: cf.Pantograph) -> None:
     [
         ({"spans": 2}, "takes at least 3"),
         ({"as_written": True, "lift": 0.3}, "lift has no effect"),
-        ({"spans": 7}, "has 6 spans"),
+        ({"spans": 7}, "its sections have 6 and 6 spans"),
         ({"lift": 1.3}, "leaves no dropper"),
     ],
 )
