@@ -345,7 +345,7 @@ def _start_transient(run: Run) -> Iterator[Check]:
         numbers = [first - 1, *numbers]
     at = catenary.support_positions
     carried = {int(np.searchsorted(at, item.middle(catenary))) for item in catenary.equipment}
-    apart = _beside_overlaps(catenary) | carried
+    apart = beside_overlaps(catenary) | carried
     equal = [
         (a, b)
         for a, b in pairwise(numbers)
@@ -366,7 +366,7 @@ def _start_transient(run: Run) -> Iterator[Check]:
     yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
 
 
-def _beside_overlaps(catenary: Catenary) -> set[int]:
+def beside_overlaps(catenary: Catenary) -> set[int]:
     """Numbers of the spans in and next to overlaps, where equal spans need not have equal forces."""
     zones = catenary.common_zones if isinstance(catenary, Line) else ()
     ends = catenary.support_positions

@@ -147,6 +147,18 @@ def test_engines_agree_on_ends(ends: dict, pantograph: cf.Pantograph) -> None:
     assert np.abs(runs[0].missing_energy).max() < 3e-3 * lost  # 0.15 to 0.22 %, with usual ends too
 
 
+def test_weights_are_a_mass_to_the_wire() -> None:
+    """T/(g i) of weights that move i times as far: T i/g."""
+    light, heavy = (
+        cf.find_form(section(4, end=cf.SectionEnd(kind="weights", ratio=ratio))).system
+        for ratio in (None, 3.0)
+    )
+    more = (heavy.mass - light.mass).diagonal()
+    last = 2 * light.axes * (light.wires[0].first + light.wires[0].x.size - 1)
+    assert more[last] == pytest.approx(20e3 * 3.0 / 9.81, rel=1e-3)
+    assert light.force == pytest.approx(heavy.force, abs=1e-6)  # on pulleys: they do not weigh on the wire
+
+
 def test_weights_that_move_slowly_hold_the_end_in_a_run(pantograph: cf.Pantograph) -> None:
     """Their inertia T i/g, tonnes, keeps a wire's end where it is while a pantograph passes."""
 

@@ -10,7 +10,10 @@ import catenary_fe as cf
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.contact import place
 from catenary_fe.layout import read_catenary
+from catenary_fe.results import quality
 from catenary_fe.statics.newton import static_contact
+from catenary_fe.views.film import scene
+from catenary_fe.views.report.tables import schedule_table
 from tests.conftest import LAYOUTS
 
 SPEED = 250 / 3.6
@@ -169,8 +172,43 @@ def test_mirror_image_of_a_line(line: cf.Line) -> None:
 
 
 def test_elasticity_is_that_of_the_lower_wire(shape: cf.Shape) -> None:
-    single = cf.elasticity(shape.sections[0], positions=[75.0, 90.0])
-    assert cf.elasticity(shape, positions=[75.0, 90.0]).uplift == pytest.approx(single.uplift, rel=1e-3)
+    places = [75.0, 243.0, 297.0, 450.0]  # the last but one is where the first section's wire is lifted
+    first, second = (
+        cf.elasticity(part, positions=np.array(own)).uplift
+        for part, own in zip(shape.sections, ([75.0, 243.0], [117.0, 270.0]), strict=True)
+    )
+    assert cf.elasticity(shape, positions=places).uplift == pytest.approx([*first, *second], rel=1e-9)
+    lifted = cf.elasticity(shape.sections[1], positions=[63.0]).uplift[0]
+    assert abs(lifted / first[1] - 1) > 0.01  # the other wire there
+
+
+def test_uplift_at_a_mast_is_when_the_pantograph_is_there(run: cf.Run) -> None:
+    x, uplift = run.data["position"].values[0], run.data["support_uplift"].values
+    masts = run.data["support_position"].values
+    assert x[uplift[2:-1].argmax(axis=1)] == pytest.approx(masts[2:-1], abs=25.0)
+    assert np.all(uplift[2:-1].max(axis=1) > 0.02)
+
+
+def test_spans_beside_an_overlap_need_not_be_equal(line: cf.Line) -> None:
+    assert quality.beside_overlaps(line) == {3, 4, 5, 6, 7}  # the overlap's 4 to 6, and one on each side
+    assert quality.beside_overlaps(line.sections[0]) == set()
+
+
+def test_tables_of_a_span_have_the_droppers_of_both_sections(shape: cf.Shape, line: cf.Line) -> None:
+    rows = schedule_table(shape, [5]).rows
+    inside = (line.dropper_positions > 240) & (line.dropper_positions < 300)
+    assert len(rows) == np.count_nonzero(inside)
+    assert {row[0] for row in rows} == {"1", "2"}
+
+
+def test_films_hang_droppers_on_their_own_section(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
+    run = cf.simulate(shape, [pantograph], speed=SPEED, method="linearised", store_wire=0.1)
+    seen = scene(run)
+    sections = np.array([wire.section for wire in seen.wires])[seen.dropper_ends]
+    counts = [len(part.catenary.droppers) for part in shape.sections]
+    assert np.array_equal(sections, np.repeat([[1, 1], [2, 2]], counts, axis=0))
+    at, rest = seen.pantograph_x[0], seen.rest[0]
+    assert np.all(np.abs(rest - 5.3) < 0.02), at[np.abs(rest - 5.3).argmax()]
 
 
 def test_an_effect_on_the_line_is_not_lost(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
