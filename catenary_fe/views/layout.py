@@ -115,7 +115,8 @@ def _draw_equipment(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line]) 
         middle = item.middle(catenary)
         if not part.inside(np.array([middle]))[0]:
             continue
-        wire = next(line for line in lines if line.name == item.wire)
+        there = [w for w in lines if w.name == item.wire and w.x.size and w.x[0] <= middle <= w.x[-1]]
+        wire = min(there, key=lambda w: float(w.height(np.array(middle))))
         x = np.linspace(*item.ends(catenary), 9)
         ax.plot(x, wire.height(x), color=style.SUPPORT, linewidth=5, solid_capstyle="round", label=label)
         label = None

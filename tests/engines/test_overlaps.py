@@ -12,6 +12,7 @@ from catenary_fe.fe.contact import place
 from catenary_fe.layout import read_catenary
 from catenary_fe.results import quality
 from catenary_fe.statics.newton import static_contact
+from catenary_fe.views import plot_layout
 from catenary_fe.views.film import scene
 from catenary_fe.views.report.tables import schedule_table
 from tests.conftest import LAYOUTS
@@ -199,6 +200,15 @@ def test_tables_of_a_span_have_the_droppers_of_both_sections(shape: cf.Shape, li
     inside = (line.dropper_positions > 240) & (line.dropper_positions < 300)
     assert len(rows) == np.count_nonzero(inside)
     assert {row[0] for row in rows} == {"1", "2"}
+
+
+def test_equipment_of_a_later_section_is_drawn(line: cf.Line) -> None:
+    clamp = cf.Equipment(name="clamp", x=250.0, mass=5.0, length=1.0)
+    second = line.sections[1].replace(equipment=(clamp,))
+    ax = plot_layout(line.replace(sections=(line.sections[0], second)), spans=[8])
+    (drawn,) = [each for each in ax.lines if each.get_label() == "equipment"]
+    assert drawn.get_xdata().mean() == pytest.approx(430.0)
+    assert np.all(np.isfinite(drawn.get_ydata()))
 
 
 def test_films_hang_droppers_on_their_own_section(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
