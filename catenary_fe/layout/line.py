@@ -77,10 +77,7 @@ class Line(Catenary):
     @cached_property
     def begins(self) -> tuple[float, ...]:
         """[m] along the line of each section's first support."""
-        found = [0.0]
-        for section, overlap in zip(self.sections, self.overlaps, strict=False):
-            found.append(found[-1] + float(section.support_positions[-1 - overlap.spans]))
-        return tuple(found)
+        return _begins(self.sections, self.overlaps)
 
     @cached_property
     def common_zones(self) -> tuple[tuple[float, float], ...]:
@@ -92,6 +89,10 @@ class Line(Catenary):
 
     def _of_droppers(self, name: str) -> NDArray[Any]:
         return np.concatenate([getattr(section, name) for section in self.sections])
+
+    def _places_of_droppers(self, name: str) -> NDArray[np.float64]:
+        parts = zip(self.sections, self.begins, strict=True)
+        return np.concatenate([getattr(section, name) + begin for section, begin in parts])
 
     @cached_property
     def droppers(self) -> Any:
@@ -111,8 +112,7 @@ class Line(Catenary):
     @cached_property
     def lower_clamp_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line, of their clamps on the contact wires."""
-        parts = zip(self.sections, self.begins, strict=True)
-        return np.concatenate([section.lower_clamp_positions + begin for section, begin in parts])
+        return self._places_of_droppers("lower_clamp_positions")
 
     @property
     def departs_from_design(self) -> bool:
@@ -126,8 +126,7 @@ class Line(Catenary):
     @cached_property
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line."""
-        parts = zip(self.sections, self.begins, strict=True)
-        return np.concatenate([section.dropper_positions + begin for section, begin in parts])
+        return self._places_of_droppers("dropper_positions")
 
     @cached_property
     def dropper_spans(self) -> NDArray[np.int64]:
@@ -228,6 +227,14 @@ def join_sections(
     )  # fmt: skip
 
 
+def _begins(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> tuple[float, ...]:
+    """[m] along the line of each section's first support."""
+    found = [0.0]
+    for section, overlap in zip(sections, overlaps, strict=False):
+        found.append(found[-1] + float(section.support_positions[-1 - overlap.spans]))
+    return tuple(found)
+
+
 def _faults_of_counts(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[str]:
     """One line for overlaps that are too many, too few, or too long for their sections."""
     if len(overlaps) != len(sections) - 1:
@@ -275,12 +282,11 @@ def _faults(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> list[s
 
 def _equipment(sections: Sequence[Catenary], overlaps: Sequence[Overlap]) -> tuple[Equipment, ...]:
     """That of all sections, by its place along the line."""
-    found, begin = [], 0.0
-    for section, overlap in zip(sections, [*overlaps, None], strict=True):
-        for item in section.equipment:
-            found.append(item.replace(x=begin + item.middle(section), span=None, position=None))
-        begin += float(section.support_positions[-1 - overlap.spans]) if overlap else 0.0
-    return tuple(found)
+    return tuple(
+        item.replace(x=begin + item.middle(section), span=None, position=None)
+        for section, begin in zip(sections, _begins(sections, overlaps), strict=True)
+        for item in section.equipment
+    )
 
 
 def _served(

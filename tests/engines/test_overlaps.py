@@ -104,6 +104,7 @@ def test_force_hands_over_without_loss(run: cf.Run) -> None:
     x = run.data["position"].values[0]
     assert not each[1, x < 180].any()
     assert not each[0, x > 360].any()
+    assert run.data["wire_height"].values.max() < 5.42  # of the wire that it meets, not of the lifted one
     both = x[(each > 0).all(axis=0)]
     assert 240 < both.min() < 270 < both.max() < 300  # in the common span
 
