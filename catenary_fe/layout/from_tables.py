@@ -350,8 +350,10 @@ def _dropper(table: Table, i: int, pattern: LinePattern, at: Sequence[float], nu
         )
     if faults:
         raise InputError(*faults)
+    place = from_chainage if x is None else x
+    assert place is not None
     return pattern.dropper.replace(
-        position=float(from_chainage if x is None else x),  # type: ignore[arg-type]
+        position=float(place),
         length=length,
         height_offset=row.get("height_offset"),
         contact_wire=wire if twin else None,
