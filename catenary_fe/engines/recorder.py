@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.history import History, of_contacts, section_forces, where_pressed
+from catenary_fe.engines.sections import Computed
 from catenary_fe.fe.contact import BaseLine, Contact, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -209,8 +211,12 @@ def read_history(
     steps: int,
     step: float,
     system: System,
+    computed: Computed | None = None,
 ) -> History:
-    """What a slot's run recorded."""
+    """What a slot's run recorded; its dropper forces are the records themselves.
+
+    computed : in which steps each section was; unset: all in all steps
+    """
     n, every, pantographs = steps + 1, records.every, start.pantographs
     time: Floats = np.arange(n, dtype=np.float64) * step
     owner = heads.owner[slot]
@@ -218,6 +224,13 @@ def read_history(
     supports = np.concatenate([path.profile[path.supports, 0] for path in system.contact_paths])
     section = np.array([path.section for path in system.contact_paths])[heads.wire[slot]]
     stored = records.wire[slot, : steps // every + 1] if every else np.zeros((0, 0))
+    droppers, uplifts = records.droppers[slot, :, :n], records.supports[slot, :, :n]
+    if computed:
+        at_supports = np.concatenate([path.index[path.supports, 0] for path in system.contact_paths])
+        computed.hold(droppers, system.section[system.droppers.first], np.arange(n))
+        computed.hold(uplifts, system.section[at_supports], np.arange(n))
+        if every:
+            computed.hold(stored.T, system.section[system.heights], np.arange(0, n, every))
     rest, nothing = system.reference[system.heights], np.array([])
     parts = [slice(wire.first, wire.first + wire.x.size) for wire in system.wires]
     of_each = [owner == p for p in range(len(pantographs))]
@@ -234,8 +247,8 @@ def read_history(
             records.masses[slot, p, : len(placed.body.bodies), :n].copy()
             for p, placed in enumerate(pantographs)
         ],
-        dropper_force=records.droppers[slot, :, :n].copy(),
-        support_height=supports[:, None] + records.supports[slot, :, :n],
+        dropper_force=droppers,
+        support_height=supports[:, None] + uplifts,
         wire_x=[wire.x for wire in system.wires],
         wire_z=[rest[part] + stored[:, part] for part in parts] if every else [],
         wire_times=time[::every] if every else None,

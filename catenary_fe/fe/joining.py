@@ -137,7 +137,7 @@ class Joint:
         return replace(
             whole,
             reference=each("reference"),
-            dof=self._dof(moved, old, width),
+            dof=self._dof(parts)[old],
             first=firsts[order],
             cables=cables,
             mass_per_length=elements("mass_per_length"),
@@ -172,21 +172,12 @@ class Joint:
         whole[first : first + pattern.size] = pattern
         return whole[old]
 
-    def _dof(self, parts: Sequence[System], old: Integers, width: int) -> Integers:
-        """Numbered by station again; coordinates that share a number still do."""
+    def _dof(self, parts: Sequence[System]) -> Integers:
+        """Numbered section by section: a run can compute some of them alone."""
         counts = np.cumsum([0, *(part.size for part in parts)])
-        raw = np.concatenate(
+        return np.concatenate(
             [np.where(p.dof == FIXED, FIXED, p.dof + n) for p, n in zip(parts, counts, strict=False)]
         )
-        x = np.concatenate([part.reference for part in parts])[::width]
-        station = np.full(counts[-1], np.inf)
-        moves = raw != FIXED
-        np.minimum.at(station, raw[moves], np.repeat(x, width)[moves])
-        number = np.empty(counts[-1] + 1, dtype=np.int64)
-        number[np.argsort(station, kind="stable")] = np.arange(counts[-1])
-        number[FIXED] = FIXED
-        found: Integers = number[raw][old]
-        return found
 
     def _wire_nodes(self, parts: Sequence[System], width: int) -> tuple[WireNodes, ...]:
         named = [

@@ -76,7 +76,7 @@ class Gaps:
 
 @dataclass(frozen=True)
 class LinearModel:
-    """M q̈ + D q̇ + K q = f with all droppers taut; coordinates in the order of their stations.
+    """M q̈ + D q̇ + K q = f with all droppers taut; coordinates by section, in the order of their stations.
 
     mass, stiffness, damping : sparse, symmetric, shape (size, size)
     dropper_rows : sparse, shape (droppers, size), elongation of each dropper
@@ -91,6 +91,7 @@ class LinearModel:
     gaps : where these tensions are
     imbalance : [N], shape (size,), what the line is out of balance where it was installed
     patterns : [N], shape (loads, size), of loads that vary in time
+    section_starts : shape (sections + 1,), where the coordinates of each tension section begin
     vertical : numbers of all heights and vertical slopes: among all coordinates of the line, and among these
     spatial : whether it has coordinates across the track
     """
@@ -110,6 +111,7 @@ class LinearModel:
     stretch: StretchCoupling
     imbalance: Floats
     patterns: Floats
+    section_starts: Integers
     vertical: tuple[Integers, Integers]
     spatial: bool
 
@@ -137,7 +139,7 @@ def linear_model(system: System) -> LinearModel:
     D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping) + system.linear_damping, gaps)
     K = K + _padded(system.spring_stiffness(), gaps)
     M = M + _padded(system.mass - system.wire_mass, gaps)
-    T, place = _kept(system, wires, gaps)
+    T, place, starts = _kept(system, wires, gaps)
     M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
     vertical = np.concatenate([system.heights, system.heights + system.axes])
     return LinearModel(
@@ -159,6 +161,7 @@ def linear_model(system: System) -> LinearModel:
         stretch=_stretch_coupling(system, wires, place),
         imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
         patterns=np.reshape([T[:whole].T @ load.pattern for load in system.time_loads], (-1, T.shape[1])),
+        section_starts=starts,
         vertical=(vertical, place[vertical]),
         spatial=system.spatial,
     )
@@ -166,7 +169,7 @@ def linear_model(system: System) -> LinearModel:
 
 def _gaps(wires: list[_ReducedWire]) -> Gaps:
     return Gaps(
-        wire=np.repeat(np.arange(len(wires)), [wire.tension.size for wire in wires]),
+        wire=np.repeat([wire.number for wire in wires], [wire.tension.size for wire in wires]),
         ends=np.concatenate([np.column_stack([wire.gap_x[:-1], wire.gap_x[1:]]) for wire in wires]),
         tension=np.concatenate([wire.tension for wire in wires]),
     )
@@ -198,6 +201,7 @@ def _swinging_links(system: System, place: Integers) -> SteadyArmBars:
 class _ReducedWire:
     """Elements of a wire without the coordinates along the track.
 
+    number : of the wire among those of the line
     across : shape (elements, m), numbers of their other coordinates
     lengths : [m], shape (elements,)
     stiffness, mass : shape (elements, m, m)
@@ -209,6 +213,7 @@ class _ReducedWire:
     tension : [N], shape (gaps,), nominal
     """
 
+    number: int
     across: Integers
     lengths: Floats
     stiffness: Floats
@@ -223,15 +228,18 @@ class _ReducedWire:
 
 
 def _reduced_wires(system: System) -> list[_ReducedWire]:
+    """Section by section."""
     rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
     stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
-    found, begin = [], 0
-    for wire in system.wires:
-        part = slice(begin, begin + wire.tension.size)
-        begin += wire.tension.size
-        index = system.elements()[part]
-        reduced = _reduced(stiffness[part], mass[part], index, wire.clamps, wire.x, wire.tension)
-        found.append(replace(reduced, lengths=system.cables.length[part]))
+    ends = np.cumsum([wire.tension.size for wire in system.wires])
+    found = []
+    for number in np.argsort([wire.section for wire in system.wires], kind="stable").tolist():
+        wire = system.wires[number]
+        part = slice(ends[number] - wire.tension.size, ends[number])
+        reduced = _reduced(
+            stiffness[part], mass[part], system.elements()[part], wire.clamps, wire.x, wire.tension
+        )
+        found.append(replace(reduced, number=number, lengths=system.cables.length[part]))
     return found
 
 
@@ -257,6 +265,7 @@ def _reduced(
     element_mass = M[:, ends[:, None], ends].sum(axis=(1, 2))  # of a wire moved along the track
     first = index[0, 0] + width * clamps
     return _ReducedWire(
+        number=0,
         across=index[:, across],
         lengths=np.zeros(len(M)),
         stiffness=stiffness,
@@ -317,18 +326,24 @@ class _Triplets:
         return values, (rows, columns)
 
 
-def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers]:
-    """T with q = T x, x the coordinates that are kept, by station; and the place of each q in x, or FIXED.
+def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers, Integers]:
+    """T with q = T x, x the coordinates that are kept, by section and station.
 
-    A gap's tension comes just before the gap's end that is farther from where the wire is held along the
-    track: so each pivot is one without exchanging rows.
+    Also the place of each q in x, or FIXED, and where the sections begin in x. A gap's tension comes just
+    before the gap's end that is farther from where the wire is held along the track: so each pivot is one
+    without exchanging rows.
     """
     from scipy.sparse import block_diag, identity
 
     T = block_diag([system.transformation, identity(gaps)]).tocsc()
     whole, width = T.shape[0] - gaps, 2 * system.axes
     station = np.full(T.shape[0], np.nan)
-    for wire, line in zip(wires, system.wires, strict=True):
+    section = np.append(system.section, np.zeros(gaps, dtype=np.int64))
+    section[whole:] = np.repeat(
+        [system.wires[wire.number].section for wire in wires], [wire.tension.size for wire in wires]
+    )
+    for wire in wires:
+        line = system.wires[wire.number]
         nodes = width * (line.first + np.arange(line.x.size))
         across = np.setdiff1d(np.arange(width), [ALONG, ALONG + system.axes])
         station[(nodes[:, None] + across).ravel()] = np.repeat(line.x, across.size)
@@ -337,15 +352,17 @@ def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, In
     held = (system.dof == FIXED) | (system.ground_stiffness > 0)
     station[whole:] = np.concatenate([_tension_stations(wire, held) for wire in wires])
     rows, columns = T.nonzero()
-    of_free = np.full(T.shape[1], np.nan)
-    of_free[columns] = station[rows]
+    of_free, part = np.full(T.shape[1], np.nan), np.zeros(T.shape[1], dtype=np.int64)
+    of_free[columns], part[columns] = station[rows], section[rows]
     is_tension = np.arange(T.shape[1]) >= T.shape[1] - gaps
-    order = np.lexsort((~is_tension, of_free))[: int(np.isfinite(of_free).sum())]
+    order = np.lexsort((~is_tension, of_free, part))
+    order = order[np.isfinite(of_free[order])]
     new = np.full(T.shape[1], FIXED, dtype=np.int64)
     new[order] = np.arange(order.size)
     place = np.full(T.shape[0], FIXED, dtype=np.int64)
     place[rows] = new[columns]
-    return T[:, order].tocsr(), place
+    starts = np.searchsorted(part[order], np.arange(system.section_starts.size))
+    return T[:, order].tocsr(), place, starts
 
 
 def _tension_stations(wire: _ReducedWire, held: NDArray[np.bool_]) -> Floats:

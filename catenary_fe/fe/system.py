@@ -75,7 +75,8 @@ class System:
 
     axes : 2 in the plane, 3 in space; up is the last one
     reference : shape (all,), points [m] and slopes from which displacements count
-    dof : shape (all,), number of the free coordinate, or FIXED; numbered in the order of their stations
+    dof : shape (all,), number of the free coordinate, or FIXED; numbered section by section, in the order of
+        their stations
     first : shape (elements,), number of each cable element's first coordinate among all; those of its two
         nodes follow one another
     cables : the elements
@@ -125,6 +126,21 @@ class System:
     def spatial(self) -> bool:
         """Whether it has coordinates across the track."""
         return self.axes == 3
+
+    @cached_property
+    def section(self) -> Integers:
+        """Shape (all,): number of each coordinate's tension section, from 0."""
+        width = 2 * self.axes
+        return np.repeat([w.section for w in self.wires], [width * w.x.size for w in self.wires])
+
+    @cached_property
+    def section_starts(self) -> Integers:
+        """Shape (sections + 1,): where the free coordinates of each section begin."""
+        moves = self.dof >= 0
+        of_free = np.zeros(self.size, dtype=np.int64)
+        of_free[self.dof[moves]] = self.section[moves]
+        starts: Integers = np.searchsorted(of_free, np.arange(int(self.section.max(initial=0)) + 2))
+        return starts
 
     @cached_property
     def contact_paths(self) -> tuple[ContactPath, ...]:
@@ -339,6 +355,21 @@ class System:
             self.only(kept),
             droppers=self.droppers.only(inside[self.droppers.first]),
             arms=self.arms.only(inside[self.arms.first]),
+        )
+
+    def part(self, section: int) -> System:
+        """The same coordinates with the elements, springs and constant forces of a tension section alone."""
+        from scipy.sparse import diags
+
+        mine = self.section == section
+        own = diags(mine.astype(float))
+        return replace(
+            self.only(mine[self.first]),
+            droppers=self.droppers.only(mine[self.droppers.first]),
+            arms=self.arms.only(mine[self.arms.first]),
+            ground_stiffness=self.ground_stiffness * mine,
+            linear_stiffness=(own @ self.linear_stiffness @ own).tocsr(),
+            force=self.force * mine,
         )
 
     def across(self, x: Floats, cut: float) -> System:

@@ -127,7 +127,7 @@ def test_engines_agree_on_an_overlap(shape: cf.Shape, run: cf.Run, pantograph: c
         gap = other.filtered_contact_force()[0] - run.filtered_contact_force()[0]
         assert np.sqrt((gap[inside] ** 2).mean()) < rms * ours.std, method
         uplift = other.data["support_uplift"].values - run.data["support_uplift"].values
-        assert np.abs(uplift).max() < 1e-3, method
+        assert np.abs(uplift[:, x < 360]).max() < 1e-3, method  # there the first section is left
 
 
 def test_without_lift_the_wires_share_the_force(pantograph: cf.Pantograph) -> None:

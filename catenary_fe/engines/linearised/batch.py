@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,6 +34,7 @@ from catenary_fe.engines.kernels import (
 from catenary_fe.engines.linearised import arrays, forces, stretch
 from catenary_fe.engines.linearised.arrays import Line, Operator
 from catenary_fe.engines.linearised.forces import record, solve_contacts
+from catenary_fe.engines.linearised.leg import Leg
 from catenary_fe.engines.linearised.setup import Setup
 from catenary_fe.engines.linearised.stretch import couple_stretch_eight, couple_stretch_one
 from catenary_fe.engines.recorder import (
@@ -42,6 +45,7 @@ from catenary_fe.engines.recorder import (
     make_records,
     read_history,
 )
+from catenary_fe.engines.sections import Computed, sections_met
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
@@ -59,6 +63,9 @@ class Batch:
         n, line = setup.size, setup.line
         j, m = sizes.contacts, sizes.coordinates
         self._setup, self.count = setup, slots
+        self._leg: Leg | None = None
+        self._start: InitialState | None = None
+        self._computed = Computed(setup.model.section_starts.size - 1)
         self._operator = setup.for_one_slot if slots == 1 else setup.for_eight_slots
         self.signals = np.zeros((len(setup.line.patterns), sizes.steps + 2)) if signals is None else signals
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
@@ -84,11 +91,15 @@ class Batch:
             head_compliance=np.zeros((slots, j, m)),
         )
         counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
-        self.records = make_records(slots, sizes, counts, every, spatial=setup.model.spatial)
+        self._new_records = partial(make_records, slots, sizes, counts, every, spatial=setup.model.spatial)
+        self.records = self._new_records()
 
     def load(self, slot: int, start: InitialState, steps: int) -> None:
         """Put a run at its start into a slot."""
-        zero = np.zeros_like(start.q)
+        if self.count == 1:
+            self.records = self._new_records()  # a history keeps those that it is of
+        zero, self._start, self._leg = np.zeros_like(start.q), start, None
+        self._computed = Computed(len(self._computed.steps))
         # at rest q* = q and v* = 0
         for array, values in zip(self.wires, (start.q, zero, zero, zero, start.q), strict=True):
             array[:, slot] = values
@@ -104,16 +115,38 @@ class Batch:
 
     def advance(self, steps: int = BLOCK) -> None:
         """Take steps in all slots; slots that are at their end stay there."""
-        setup, wires = self._setup, self.wires
-        rest = (self.heads, self.pantographs, self.work, self.records, steps)
+        own: tuple[Any, ...] = self._operator, self._setup.line, self.wires, self.work, self.records
+        if self._setup.relays and self.count == 1:
+            own = self._leg_of(steps)
+        operator, line, wires, work, records = own
         flat = Wires(*(array.reshape(-1) for array in wires))
+        rest = (self.signals, wires, flat, self.heads, self.pantographs, work, records, steps)
         with vectorising():
             take = _advance_one if self.count == 1 else _advance_eight
-            take(setup.scheme, self._operator, setup.line, self.signals, wires, flat, *rest)
+            take(self._setup.scheme, operator, line, *rest)
+
+    def _leg_of(self, steps: int) -> tuple[Operator, Line, Wires, Work, Records]:
+        """Arrays of the sections that the run's pantographs are on during the next steps."""
+        assert self._start is not None
+        done, last = int(self.pantographs.step[0]), int(self.heads.last[0])
+        after, metre = min(done + steps, last), self._start.speed * self._setup.scheme.h
+        paths = self._setup.model.contacts
+        met = sections_met(paths, self._start.contacts, metre * done, metre * after)
+        if not self._leg or self._leg.sections != met:
+            before, self._leg = self._leg, Leg.of(self._setup, met)
+            if before:
+                self._leg.take_over(self.work, before)
+        if after > done:
+            self._computed.add(met, done, after)
+        leg = self._leg
+        own = leg.wires(self.wires), leg.work(self.work), leg.records(self.records)
+        return leg.operator, leg.line, *own
 
     def history(self, slot: int, start: InitialState, steps: int, system: System) -> History:
         """What a slot's run recorded."""
-        return read_history(self.records, self.heads, slot, start, steps, self._setup.scheme.h, system)
+        computed, step = self._computed if self._leg else None, self._setup.scheme.h
+        found = read_history(self.records, self.heads, slot, start, steps, step, system, computed)
+        return found if self.count == 1 else replace(found, dropper_force=found.dropper_force.copy())
 
     def tension_changes(self, slot: int) -> tuple[Floats, Integers]:
         """[N], shape (gaps,): largest change of each gap's tension, and the steps at whose ends they are."""
@@ -215,10 +248,13 @@ _advance_one, _advance_eight = _loops(
 
 
 def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> int:
-    """``SLOTS`` if there are several runs and their histories fit into the memory [bytes], else 1."""
+    """``SLOTS`` if there are several runs and their histories fit into the memory [bytes], else 1.
+
+    Runs that compute some of the sections alone go one by one: side by side they were on all of them.
+    """
     line = setup.line
     histories = (
         line.k.size + line.supports.size + 3 * sizes.contacts + sizes.pantographs * sizes.coordinates + 2
     )
     size = 8.0 * SLOTS * (sizes.steps * histories + sizes.shapes * line.heights.size)
-    return SLOTS if runs > 1 and size <= memory else 1
+    return SLOTS if runs > 1 and size <= memory and not setup.relays else 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from catenary_fe.engines.linearised.arrays import (
     SteadyArmBars,
     StretchCoupling,
 )
+from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.contact import BaseLine
 from catenary_fe.fe.reduction import LinearModel
@@ -30,6 +31,16 @@ Integers = NDArray[np.int64]
 
 NEGLIGIBLE = 1e-6  # of a column's largest entry
 _SPACING = 640  # rows between columns that are found together, at first
+_Each = TypeVar("_Each")
+
+
+class Slices(NamedTuple, Generic[_Each]):
+    """Of each section: its rows, droppers, links and gaps among those of the line."""
+
+    rows: _Each
+    droppers: _Each
+    links: _Each
+    gaps: _Each
 
 
 @dataclass(frozen=True)
@@ -40,6 +51,8 @@ class Setup:
     static : factor of the stiffness
     nominal : [m], contact wire height
     base_line : what the bases of pantographs follow
+    parts : where those of each section begin, shape (sections + 1,) each
+    relays : whether a run can compute some of the sections alone
     """
 
     model: LinearModel
@@ -52,6 +65,8 @@ class Setup:
     beta: float
     stiffness: Any
     rest: Any
+    parts: Slices[Integers]
+    relays: bool
 
     def load_at(self, signals: Floats) -> Floats:
         """[N], shape (size,): with the loads that vary in time at signals of shape (loads,)."""
@@ -79,15 +94,39 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
     beta, nominal = system.beta, system.contact_wire_height
     scheme = make_scheme(time)
     model = _filled_up(model)
+    starts = model.section_starts
     factor = factorise(model.mass + scheme.g * model.damping + scheme.b * model.stiffness)
     static = factorise(model.stiffness)
     K = model.stiffness.tocsr()
     rest = (model.damping - beta * K).tocsr()
     rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max(initial=0.0)] = 0.0
     rest.eliminate_zeros()
+    line = _line(model, factor)
+    of_gaps = np.array([wire.section for wire in system.wires])[model.gaps.wire]
     return Setup(
-        model, scheme, _line(model, factor), factor, static, nominal, system.base_line, beta, K, rest
+        model=model,
+        scheme=scheme,
+        line=line,
+        factor=factor,
+        static=static,
+        nominal=nominal,
+        base_line=system.base_line,
+        beta=beta,
+        stiffness=K,
+        rest=rest,
+        parts=Slices(
+            rows=starts,
+            droppers=parts_of(system.section[system.droppers.first], starts.size - 1),
+            links=parts_of(system.section[system.arms.first], starts.size - 1),
+            gaps=parts_of(of_gaps, starts.size - 1),
+        ),
+        relays=starts.size > 2 and not len(model.patterns) and _widest(line) <= np.diff(starts).min(),
     )
+
+
+def _widest(line: Line) -> int:
+    each = line.contact_compliance, line.dropper_compliance, line.links.compliance
+    return max(int(columns.value.shape[1]) for columns in each)
 
 
 def _operator(setup: Setup, form: Callable[..., Any]) -> Operator:
@@ -102,28 +141,38 @@ def _operator(setup: Setup, form: Callable[..., Any]) -> Operator:
 
 
 def _filled_up(model: LinearModel) -> LinearModel:
-    """With idle coordinates at the end, up to a multiple of four."""
-    from scipy.sparse import block_diag, csr_matrix, hstack, identity
+    """With idle coordinates at the end of each section, up to a multiple of four."""
+    from scipy.sparse import csr_matrix
 
-    more = -model.size % 4
-    if not more:
+    rows = Rows.of(model.section_starts)
+    if rows.size == model.size:
         return model
-    mass, stiffness = (block_diag([A, identity(more)]).tocsr() for A in (model.mass, model.stiffness))
+    own = model.dropper_rows.tocsr()
     return replace(
         model,
-        mass=mass,
-        stiffness=stiffness,
-        damping=block_diag([model.damping, csr_matrix((more, more))]).tocsr(),
-        imbalance=np.append(model.imbalance, np.zeros(more)),
-        patterns=np.hstack([model.patterns, np.zeros((len(model.patterns), more))]),
-        dropper_rows=hstack([model.dropper_rows, csr_matrix((model.dropper_rows.shape[0], more))]).tocsr(),
+        mass=rows.matrix(model.mass, 1.0),
+        stiffness=rows.matrix(model.stiffness, 1.0),
+        damping=rows.matrix(model.damping),
+        imbalance=rows.spread(model.imbalance),
+        patterns=rows.spread(model.patterns),
+        dropper_rows=csr_matrix((own.data, rows.place[own.indices], own.indptr), (own.shape[0], rows.size)),
+        contacts=tuple(
+            replace(path, dof=rows.number(path.dof), across_dof=rows.number(path.across_dof))
+            for path in model.contacts
+        ),
+        heights=rows.number(model.heights),
+        tensions=rows.number(model.tensions),
+        links=replace(model.links, index=rows.number(model.links.index)),
+        stretch=replace(model.stretch, index=rows.number(model.stretch.index)),
+        section_starts=rows.starts,
+        vertical=(model.vertical[0], rows.number(model.vertical[1])),
     )
 
 
 def _line(model: LinearModel, factor: Any) -> Line:
     from scipy.sparse import csc_matrix
 
-    contacts = model.contacts
+    contacts, starts = model.contacts, model.section_starts
     at = np.concatenate([wire.dof for wire in contacts])
     free = np.unique(at[at != FIXED])
     column = np.full(at.shape, FIXED, dtype=np.int64)
@@ -138,12 +187,12 @@ def _line(model: LinearModel, factor: Any) -> Line:
         at=at,
         across=np.concatenate([wire.across_dof for wire in contacts]),
         column=column,
-        contact_compliance=_columns(factor, units),
+        contact_compliance=_columns(factor, units, starts),
         rows=csr_rows(model.dropper_rows),
         k=model.dropper_stiffness,
         d=model.dropper_damping,
         tension=model.dropper_tension,
-        dropper_compliance=_columns(factor, model.dropper_rows.T.tocsc()),
+        dropper_compliance=_columns(factor, model.dropper_rows.T.tocsc(), starts),
         links=_links(model, factor),
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
@@ -160,11 +209,15 @@ def _links(model: LinearModel, factor: Any) -> SteadyArmBars:
     links = model.links
     at = links.index.ravel()
     units = csc_matrix((np.ones(at.size), (at, np.arange(at.size))), shape=(model.size, at.size))
-    return SteadyArmBars(links.index, links.span, links.length, links.stiffness, _columns(factor, units))
+    compliance = _columns(factor, units, model.section_starts)
+    return SteadyArmBars(links.index, links.span, links.length, links.stiffness, compliance)
 
 
-def _columns(factor: Any, right: Any) -> ComplianceColumns:
-    """Columns of the inverse times ``right``, many at once: in one step a force is felt nearby only."""
+def _columns(factor: Any, right: Any, starts: Integers) -> ComplianceColumns:
+    """Columns of the inverse times ``right``, many at once: in one step a force is felt nearby only.
+
+    starts : shape (sections + 1,), rows where sections begin; a column stays in its own one if that has room
+    """
     size, count = right.shape
     if not count:
         return ComplianceColumns(np.zeros(0, dtype=np.int64), np.zeros((0, 1)))
@@ -180,7 +233,9 @@ def _columns(factor: Any, right: Any) -> ComplianceColumns:
     begin, end = large.argmax(axis=1), spacing - large[:, ::-1].argmax(axis=1)
     width = int((end - begin).max())
     # all are as wide as the widest: the room to spare, to both sides
-    first = np.clip(low + (begin + end - width) // 2, 0, size - width)
+    section = np.searchsorted(starts, middle, side="right")
+    first = np.clip(low + (begin + end - width) // 2, starts[section - 1], starts[section] - width)
+    first = np.clip(first, 0, size - width)
     inside = first[:, None] + np.arange(width) - low[:, None]
     value = np.take_along_axis(values, np.clip(inside, 0, spacing - 1), axis=1)
     return ComplianceColumns(first, np.where((inside >= 0) & (inside < spacing), value, 0.0))

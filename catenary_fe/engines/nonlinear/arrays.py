@@ -52,7 +52,8 @@ class Stations(NamedTuple):
     x, lengths : [m], shape (nodes,)
     profile, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
     at, across : shape (nodes, 2), free coordinates of height and slope, and likewise to the left
-    supports : shape (contact wires * supports,), numbers of heights among all coordinates
+    left : shape (nodes, 2), of those to the left the numbers among all coordinates; in the plane no rows
+    supports : shape (contact wires * supports,), numbers of heights among all coordinates; FIXED: not here
     heights : shape (nodes of all wires,), likewise
     rest : [m], shape (nodes of all wires,), heights that uplifts count from
     rest_supports : [m], shape (contact wires * supports,), likewise at supports
@@ -65,6 +66,7 @@ class Stations(NamedTuple):
     lateral: Floats
     at: Integers
     across: Integers
+    left: Integers
     supports: Integers
     heights: Integers
     rest: Floats

@@ -29,6 +29,7 @@ class EnergyRecord:
 
     def __init__(self, parameters: Parameters, pantographs: Sequence[PlacedPantograph]) -> None:
         self._parameters, self._pantographs = parameters, pantographs
+        self._stored: Floats = np.full(parameters.rows.starts.size - 1, np.nan)
         self._values: list[float] = []
 
     @property
@@ -39,13 +40,19 @@ class EnergyRecord:
     def go_on(self, values: Floats) -> None:
         """Take up readings made before, the first one excepted, which is read again."""
         self._values = values.tolist()
+        self._stored[:] = np.nan
 
-    def read(self, state: State, scheme: Scheme) -> None:
-        """Take the energy at a step's end."""
+    def read(self, state: State, scheme: Scheme, sections: tuple[int, int]) -> None:
+        """Take the energy at a step's end; sections that were not computed in it store what they did."""
         wires, own, system = state.wires, state.pantographs, self._parameters.system
         q, v = (a[:, 0] + by * wires.x[:, 0] for a, by in ((wires.q, scheme.b), (wires.v, scheme.g)))
-        q, v = q[: system.size], v[: system.size]
-        total = system.energy(system.spread(q)) + float(v @ (self._parameters.mass @ v) / 2)
+        rows = self._parameters.rows.place
+        q, v = q[rows], v[rows]
+        moved = system.spread(q)
+        for section, part in enumerate(self._parameters.sections):
+            if sections[0] <= section < sections[1] or np.isnan(self._stored[section]):
+                self._stored[section] = part.energy(moved)
+        total = float(self._stored.sum() + v @ (self._parameters.mass @ v) / 2)
         for p, placed in enumerate(self._pantographs):
             body, m = placed.body, placed.body.size
             x: Floats = own.x[0, p, :m]
@@ -63,9 +70,16 @@ class RunRecorder:
     tension: TensionRecord
     energy: EnergyRecord
 
-    def read(self, scheme: Scheme, displacements: NDArray[np.float64]) -> None:
-        """Take tensions and energy where the run is now; displacements of all coordinates."""
-        self.energy.read(self.state, scheme)  # first: what has no time yet is cut where a run is interrupted
+    def read(
+        self, scheme: Scheme, displacements: NDArray[np.float64], sections: tuple[int, int] = (0, 0)
+    ) -> None:
+        """Take tensions and energy where the run is now.
+
+        displacements : [m], shape (all,)
+        sections : from the first one that was computed to before the last
+        """
+        # energies first: what has no time yet is cut where a run is interrupted
+        self.energy.read(self.state, scheme, sections)
         self.tension.read(scheme.h * int(self.state.pantographs.step[0]), displacements)
 
     def joined(self, history: History) -> History:

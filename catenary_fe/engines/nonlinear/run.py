@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import Records, Wires
+from catenary_fe.engines.arrays import Records
 from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
 from catenary_fe.engines.faults import place_of_heads, smaller_steps
 from catenary_fe.engines.generalized_alpha import Scheme, at_start, make_scheme
 from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.nonlinear.arrays import Factor
+from catenary_fe.engines.nonlinear.leg import Leg
 from catenary_fe.engines.nonlinear.recorder import EnergyRecord, RunRecorder
 from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
@@ -27,6 +28,7 @@ from catenary_fe.engines.recorder import (
     make_records,
     read_history,
 )
+from catenary_fe.engines.sections import Computed, sections_met
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import PlacedPantograph, place
@@ -106,7 +108,10 @@ class NonlinearRun:
     ) -> None:
         self._engine, system = engine, engine._system
         self._parameters, self._steps, self._step = engine._parameters, steps, engine._time.step
-        self._start = _initial_state(system, moved, pantographs, speed)
+        self._start = _initial_state(self._parameters, moved, pantographs, speed)
+        self._leg: Leg | None = None
+        self._computed = Computed(self._parameters.rows.starts.size - 1)
+        self._all = bool(system.time_loads)
         paths = system.contact_paths
         sizes = Sizes.of([pantographs], len(paths), steps, engine._every)
         heads, own = make_pantographs(1, sizes, system.contact_wire_height, system.base_line)
@@ -130,35 +135,41 @@ class NonlinearRun:
         return records
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
-        """Begin with velocities and accelerations instead of at rest.
+        """Begin with velocities and accelerations instead of at rest; all sections are computed then.
 
         v, x : [m/s], [m/s²], shape (free,)
         heads : [m/s²], shape (pantographs, coordinates)
         """
         scheme, wires, own = self._engine._scheme, self.state.wires, self.state.pantographs
-        size = v.size
-        parts = at_start(scheme, wires.q[:size, 0].copy(), v, x)
+        rows = self._parameters.rows
+        parts = at_start(scheme, wires.q[:, 0].copy(), rows.spread(v), rows.spread(x))
         for array, values in zip(wires[:4], parts, strict=True):
-            array[:size, 0] = values
+            array[:, 0] = values
+        self._all = True
         parts = at_start(scheme, own.q[0].copy(), np.zeros_like(own.q[0]), heads)
         for array, values in zip(own[:4], parts, strict=True):
             array[0] = values
 
     def motion(self) -> tuple[Floats, Floats]:
         """Displacements and velocities now, shape (free,) each."""
-        scheme, wires, size = self._engine._scheme, self.state.wires, self._parameters.system.size
+        scheme, wires, rows = self._engine._scheme, self.state.wires, self._parameters.rows.place
         q, v = wires.q + scheme.b * wires.x, wires.v + scheme.g * wires.x
-        return q[:size, 0], v[:size, 0]
+        return q[rows, 0], v[rows, 0]
 
     def take_up(self, checkpoint: Checkpoint | None) -> None:
         """Go on from what a checkpoint kept, if it kept anything."""
         if checkpoint and checkpoint.kept:
             self.done = self._recorder.go_on(checkpoint.kept)
+            self._computed.steps[:] = checkpoint.kept["computed"]
+            first, end = checkpoint.kept["sections"].tolist()
+            self._leg = Leg.of(self._parameters, (first, end))
             self._notes = checkpoint.kept["notes"].tolist()
 
     def arrays(self) -> dict[str, NDArray[np.generic]]:
         """What a run needs to go on from here with the same result."""
-        return self._recorder.arrays() | {"notes": np.array(self._notes)}
+        assert self._leg
+        own = {"computed": self._computed.steps, "sections": np.array(self._leg.sections)}
+        return self._recorder.arrays() | own | {"notes": np.array(self._notes)}
 
     def history(self) -> History:
         """What was recorded so far."""
@@ -170,6 +181,7 @@ class NonlinearRun:
             self._steps,
             self._step,
             self._parameters.system,
+            self._computed if len(self._computed.steps) > 1 else None,
         )
         return replace(self._recorder.joined(found), notes=tuple(self._notes))
 
@@ -179,13 +191,14 @@ class NonlinearRun:
         read : whether tensions and energy are taken at their end
         """
         engine, state = self._engine, self.state
+        leg = self._leg_of(steps)
         before = state.snapshot()
         if not self._take(steps, 1, engine._scheme, engine._factor):
             self._take_again(steps, before)
         self.done += steps
         if read:
             moved = state.motion.total - self._parameters.system.reference
-            self._recorder.read(engine._scheme, moved)
+            self._recorder.read(engine._scheme, moved, leg.sections)
 
     def _take_again(self, steps: int, before: list[NDArray[np.generic]]) -> None:
         engine, state = self._engine, self.state
@@ -203,6 +216,19 @@ class NonlinearRun:
                 return
         raise SolverError(self._failure())
 
+    def _leg_of(self, steps: int) -> Leg:
+        """The sections that pantographs are on during the next steps."""
+        metre, met = self._step * self._start.speed, (0, len(self._computed.steps))
+        if not self._all:
+            paths = self._parameters.system.contact_paths
+            met = sections_met(paths, self._start.contacts, metre * self.done, metre * (self.done + steps))
+        if not self._leg or self._leg.sections != met:
+            before, self._leg = self._leg, Leg.of(self._parameters, met)
+            if before:
+                self._leg.take_over(self.state, before)
+        self._computed.add(met, self.done, self.done + steps)
+        return self._leg
+
     def _positions(self, time: float) -> list[float]:
         return [placed.position + self._start.speed * time for placed in self._start.pantographs]
 
@@ -214,16 +240,18 @@ class NonlinearRun:
         )
 
     def _take(self, steps: int, parts: int, scheme: Scheme, factor: Factor) -> bool:
-        state, tolerance = self.state, self._engine._time.tolerance
-        flat = Wires(*(array.reshape(-1) for array in state.wires))
+        state, leg, tolerance = self.state, self._leg, self._engine._time.tolerance
+        assert leg
+        own = leg.arrays(state, self.records)
         begin = int(state.pantographs.step[0])
         times = self._step * (begin + np.arange(steps * parts + 1) / parts)
         _, signals = self._parameters.system.load(times)
         done, iterations = advance(
-            scheme, self._parameters.equations, self._parameters.stations, factor, state.wires, flat,
-            state.motion, state.slack, state.heads, state.pantographs, state.work, self.records, state.energy,
+            scheme, leg.equations, leg.stations, leg.factor(factor), own.wires, own.flat,
+            own.motion, own.slack, state.heads, state.pantographs, state.work, own.records, own.energy,
             signals, steps, parts, tolerance,
         )  # fmt: skip
+        leg.put_back(own, state)
         self.iterations += iterations
         return bool(done)
 
@@ -238,10 +266,13 @@ class NonlinearRun:
 
 
 def _initial_state(
-    system: System, moved: Floats, pantographs: Sequence[PlacedPantograph], speed: float
+    parameters: Parameters, moved: Floats, pantographs: Sequence[PlacedPantograph], speed: float
 ) -> InitialState:
+    system = parameters.system
     free = np.zeros(system.size)
     moves = system.dof >= 0
     free[system.dof[moves]] = moved[moves]
     tensions = system.droppers.tension(system.droppers.span(system.reference + moved))
-    return InitialState(free, list(pantographs), tensions, speed, len(system.contact_paths))
+    return InitialState(
+        parameters.rows.spread(free), list(pantographs), tensions, speed, len(system.contact_paths)
+    )

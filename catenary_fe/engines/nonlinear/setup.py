@@ -13,26 +13,46 @@ from catenary_fe.engines.factor import factorise, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays, Stations
 from catenary_fe.engines.nonlinear.cables import Elements
+from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.fe.spring import Springs
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class Parameters:
-    """What stays the same in all runs on a line; coordinates are filled up to a multiple of four."""
+    """What stays the same in all runs on a line; each section's coordinates are filled up to fours."""
 
     system: System
 
     @cached_property
+    def rows(self) -> Rows:
+        """Places of the free coordinates."""
+        return Rows.of(self.system.section_starts)
+
+    @cached_property
+    def sections(self) -> list[System]:
+        """The line's tension sections, over the same coordinates."""
+        count = self.rows.starts.size - 1
+        return [self.system.part(n) for n in range(count)] if count > 1 else [self.system]
+
+    @cached_property
+    def parts(self) -> tuple[Integers, Integers, Integers]:
+        """Where the rows, droppers and links of each section begin, shape (sections + 1,)."""
+        section, count = self.system.section, self.rows.starts.size - 1
+        springs = self.system.droppers, self.system.arms
+        droppers, links = (parts_of(section[each.first], count) for each in springs)
+        return self.rows.starts, droppers, links
+
+    @cached_property
     def equations(self) -> Equations:
         """Forces, mass and damping."""
-        line, cables, more = self.system, self.system.cables, -self.system.size % 4
-        idle = np.zeros(more)
+        line, cables, rows = self.system, self.system.cables, self.rows
         return Equations(
             reference=line.reference,
-            dof=line.dof,
+            dof=rows.number(line.dof),
             elements=Elements(
                 line.first,
                 cables.length,
@@ -42,11 +62,11 @@ class Parameters:
             ),
             droppers=_arrays(line.droppers),
             links=_arrays(line.arms),
-            patterns=np.hstack([line.load(np.zeros(1))[0], np.zeros((len(line.time_loads), more))]),
-            stiffness=packed_rows(_padded(line.free(self._linear_stiffness), more, 0.0)),
-            force=np.concatenate([line.gather(line.force), idle]),
-            mass=packed_rows(_padded(self.mass, more, 1.0)),
-            damping=packed_rows(_padded(line.free(self._damping), more, 0.0)),
+            patterns=rows.spread(line.load(np.zeros(1))[0]),
+            stiffness=packed_rows(rows.matrix(line.free(self._linear_stiffness))),
+            force=rows.spread(line.gather(line.force)),
+            mass=packed_rows(rows.matrix(self.mass, 1.0)),
+            damping=packed_rows(rows.matrix(line.free(self._damping))),
         )
 
     @cached_property
@@ -78,8 +98,9 @@ class Parameters:
             lengths=np.concatenate([[*path.lengths, 1.0] for path in paths]),
             profile=np.concatenate([path.profile for path in paths]),
             lateral=np.concatenate([path.lateral for path in paths]),
-            at=np.concatenate([path.dof for path in paths]),
-            across=np.concatenate([path.across_dof for path in paths]),
+            at=self.rows.number(np.concatenate([path.dof for path in paths])),
+            across=self.rows.number(np.concatenate([path.across_dof for path in paths])),
+            left=np.concatenate([path.across for path in paths]),
             supports=np.concatenate([path.index[path.supports, 0] for path in paths]),
             heights=self.system.heights,
             rest=rest,
@@ -90,7 +111,7 @@ class Parameters:
         """Factorise the step's matrix where all coordinates are displaced like this."""
         tangent = self.system.tangent(moved)
         matrix = self.mass + scheme.g * self._taut_damping + scheme.b * tangent
-        factor = factorise(_padded(matrix, -self.system.size % 4, 1.0))
+        factor = factorise(self.rows.matrix(matrix, 1.0))
         return Factor(
             packed_rows(factor.L, "lower"),
             packed_rows(factor.L.T, "upper"),
@@ -103,9 +124,3 @@ def _arrays(springs: Springs) -> SpringArrays:
     return SpringArrays(
         springs.first, springs.last, springs.pivot, springs.length, springs.stiffness, springs.damping
     )
-
-
-def _padded(matrix: Any, more: int, diagonal: float) -> Any:
-    from scipy.sparse import block_diag, identity
-
-    return block_diag([matrix, diagonal * identity(more)]).tocsr() if more else matrix

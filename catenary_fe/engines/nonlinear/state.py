@@ -42,9 +42,7 @@ class State:
     ) -> State:
         """At rest; ``total`` are positions and slopes there, shape (all coordinates,)."""
         n = equations.force.size
-        wires = Wires(
-            np.append(start.q, np.zeros(n - start.q.size))[:, None], *(np.zeros((n, 1)) for _ in range(4))
-        )
+        wires = Wires(start.q[:, None].copy(), *(np.zeros((n, 1)) for _ in range(4)))
         motion = Motion(
             np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), total.copy(), np.zeros(total.size)
         )
@@ -138,7 +136,7 @@ def _energy_balance(start: InitialState, total: Floats, system: Equations, sizes
     free = system.force.size
     return EnergyBalance(
         work=np.zeros(2),
-        q=np.append(start.q, np.zeros(free - start.q.size)),
+        q=start.q.copy(),
         drag=np.zeros(free),
         heads=heads,
         head_drag=np.zeros(masses),

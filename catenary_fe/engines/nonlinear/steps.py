@@ -54,7 +54,6 @@ def _place(
     time: float,
 ) -> None:
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
-    axes = total.size // (2 * stations.rest.size)
     advance_heads(scheme, pantographs, 0)
     free_heads(heads, pantographs, 0, time)
     for j in range(heads.owner.shape[1]):
@@ -64,7 +63,7 @@ def _place(
         position = heads.start[0, j] + heads.speed[0, j] * time
         e, _ = weigh_contact(stations, heads, work, 0, j, position)
         place_base(heads, work, 0, j, time)
-        place_head(heads, work, 0, j, _sideways(work.shape[0, j], total, axes, e))
+        place_head(heads, work, 0, j, _sideways(stations, work.shape[0, j], total, e))
         first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
         work.first[0, j], work.width[0, j] = first, width
         for s in range(pantographs.x.shape[2]):
@@ -72,12 +71,14 @@ def _place(
 
 
 @compiled
-def _sideways(weights: Floats, total: Floats, axes: int, node: int) -> float:
-    """[m] to the left of the track at a contact, as the wire was a step ago; contact wires come first."""
+def _sideways(stations: Stations, weights: Floats, total: Floats, node: int) -> float:
+    """[m] to the left of the track at a contact, as the wire was a step ago."""
     place = 0.0
-    if axes == 3:
+    if stations.left.shape[0] > 0:
         for m in range(4):
-            place += weights[m] * total[6 * (node + m // 2) + 1 + 3 * (m % 2)]
+            i = stations.left[node + m // 2, m % 2]
+            if i >= 0:
+                place += weights[m] * total[i]
     return place
 
 
@@ -175,11 +176,13 @@ def _record(
             to.masses[0, p, s, n] = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
     for s in range(stations.supports.size):
         i = stations.supports[s]
-        to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
+        if i >= 0:
+            to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
     if to.every > 0 and n % to.every == 0:
         for node in range(stations.heights.size):
             i = stations.heights[node]
-            to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
+            if i >= 0:
+                to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
 
 
 @compiled

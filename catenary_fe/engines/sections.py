@@ -1,0 +1,138 @@
+"""Which tension sections a run computes at a time, and what it records of the others.
+
+Nothing but a pantograph connects two sections: one is at rest until the first pantograph comes, and nothing
+that it does reaches any after the last one has left. So a run computes those alone that pantographs are on,
+and its cost grows with the length of the line, not with the square.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.engines.arrays import CsrRows, PackedRows
+from catenary_fe.fe.contact import Contact, ContactPath
+from catenary_fe.fe.spring import FIXED
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+_GROUP = 4  # rows that compiled loops take at once
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Places of a line's coordinates where those of each section are filled up to a multiple of four.
+
+    place : shape (coordinates,)
+    starts : shape (sections + 1,), where each section's begin
+    """
+
+    place: Integers
+    starts: Integers
+
+    @classmethod
+    def of(cls, starts: Integers) -> Rows:
+        """From where each section's coordinates begin as they are numbered on the line."""
+        counts = np.diff(starts)
+        filled = np.cumsum([0, *(-(-counts // _GROUP) * _GROUP)])
+        return cls(np.concatenate([n + np.arange(m) for n, m in zip(filled, counts, strict=False)]), filled)
+
+    @property
+    def size(self) -> int:
+        """With the idle ones."""
+        return int(self.starts[-1])
+
+    def number(self, index: Integers) -> Integers:
+        """Numbers on the line as places; FIXED stays."""
+        return np.append(self.place, FIXED)[index]
+
+    def spread(self, values: Floats) -> Floats:
+        """Values of the coordinates, shape (..., coordinates), with zeros for idle ones."""
+        found = np.zeros((*values.shape[:-1], self.size))
+        found[..., self.place] = values
+        return found
+
+    def matrix(self, matrix: Any, idle: float = 0.0) -> Any:
+        """A matrix over the coordinates, sparse, with this on the diagonal of idle ones."""
+        from scipy.sparse import csr_matrix, diags
+
+        entries = np.ones(self.place.size), (self.place, np.arange(self.place.size))
+        T = csr_matrix(entries, shape=(self.size, self.place.size))
+        diagonal = np.full(self.size, idle)
+        diagonal[self.place] = 0.0
+        return (T @ matrix @ T.T + diags(diagonal)).tocsr()
+
+
+def sections_met(
+    paths: Sequence[ContactPath], contacts: Sequence[Contact], begin: float, end: float
+) -> tuple[int, int]:
+    """The sections that contacts are on: the first, and the one after the last; those between two count.
+
+    begin, end : [m] that the pantographs have run, at the first moment and at the last
+    """
+    found = [
+        paths[contact.wire].section
+        for contact in contacts
+        if paths[contact.wire].x[0] <= contact.position + end
+        and contact.position + begin <= paths[contact.wire].x[-1]
+    ]
+    return (min(found), max(found) + 1) if found else (0, paths[-1].section + 1)
+
+
+class Computed:
+    """Steps in which a run computed each section.
+
+    steps : shape (sections, 2), the first and the last one; none: the last is 0
+    """
+
+    def __init__(self, sections: int) -> None:
+        self.steps: Integers = np.zeros((sections, 2), dtype=np.int64)
+
+    def add(self, sections: tuple[int, int], before: int, after: int) -> None:
+        """Take the steps that lead from one number to another."""
+        for section in range(*sections):
+            if not self.steps[section, 1]:
+                self.steps[section, 0] = before + 1
+            self.steps[section, 1] = after
+
+    def hold(self, values: Floats, of: Integers, steps: Integers) -> None:
+        """Fill records with their first value until a section is computed, with their last one afterwards.
+
+        values : shape (items, records)
+        of : shape (items,), section of each
+        steps : shape (records,), at whose ends they were taken
+        """
+        for row, section in zip(values, of.tolist(), strict=True):
+            first, last = np.searchsorted(steps, self.steps[section] + np.array([0, 1]))
+            row[1:first], row[last:] = row[0], row[last - 1]
+
+
+def packed_part(rows: PackedRows, first: int, end: int) -> PackedRows:
+    """Rows of some sections alone, as rows of their own."""
+    groups = slice(first // _GROUP, end // _GROUP)
+    start = rows.start[groups.start : groups.stop + 1]
+    entries = slice(int(start[0]), int(start[-1]))
+    return PackedRows(
+        start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries], rows.inner[groups]
+    )
+
+
+def csr_part(rows: CsrRows, which: slice, first: int) -> CsrRows:
+    """Some rows, with columns that count from ``first``."""
+    start = rows.start[which.start : which.stop + 1]
+    entries = slice(int(start[0]), int(start[-1]))
+    return CsrRows(start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries])
+
+
+def moved(index: Integers, first: int, end: int) -> Integers:
+    """Numbers of coordinates that count from ``first``; FIXED for what is not before ``end`` or was so."""
+    return np.where((index >= first) & (index < end), index - first, FIXED)
+
+
+def parts_of(of: Integers, sections: int) -> Integers:
+    """Shape (sections + 1,): where the items of each section begin; ``of`` never falls."""
+    return np.searchsorted(of, np.arange(sections + 1))
