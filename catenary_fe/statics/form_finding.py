@@ -19,7 +19,7 @@ from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
 from catenary_fe.layout.rules import dropper_names
 from catenary_fe.statics.as_set import mast_springs
-from catenary_fe.statics.rules import check_links
+from catenary_fe.statics.rules import check_arms
 from catenary_fe.statics.shape import HangingWire, Shape
 from catenary_fe.statics.taut_wires import TautProblem, TautWires, installed_lines
 
@@ -319,8 +319,7 @@ class WireSubstructures:
         if mesh.messenger:
             supported = [self._at_support(mesh.contact_wires, i) for i in range(len(support_forces))]
             support_forces = self._with_springs(self.reactions)[:, supported].T
-        if self.axes == 3:
-            check_links(self.catenary, arm_forces)
+        check_arms(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))
         balance = np.zeros(2 * self.axes * n)
         installation = balanced(

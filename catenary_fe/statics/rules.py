@@ -57,17 +57,26 @@ def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> No
     )
 
 
-def check_links(catenary: Catenary, arm_forces: Floats) -> None:
-    """Raises InputError for links that would have to push, or that nothing pulls.
+def check_arms(catenary: Catenary, arm_forces: Floats) -> None:
+    """Raises InputError for steady arms that would have to push, and for links that nothing pulls.
 
-    arm_forces : [N], shape (contact wires, spans + 1, 2), on the wires: to the left, up
+    arm_forces : [N], shape (contact wires, spans + 1, axes - 1), on the wires: in space to the left; up
     """
     faults = []
     for i, support in list(enumerate(catenary.supports, start=1))[1:-1]:
         arm = support.steady_arm
-        if arm is None or arm.length is None:
+        if arm is None:
             continue
-        for left, up in arm_forces[:, i - 1]:
+        for force in arm_forces[:, i - 1]:
+            left, up = force[0], force[-1]
+            if up < -_LEAST_PULL:
+                faults.append(
+                    f"support {i}: the steady arm would have to hold the contact wire down with {-up:.0f} N:"
+                    " steady arms hang from their pivots and only carry: raise the wire here, or lower it at"
+                    " the supports beside"
+                )
+            if arm.length is None or force.size < 2:
+                continue
             side = "left" if left > 0 else "right"
             steep = np.arctan2(abs(up), abs(left))
             if abs(left) < _LEAST_PULL:

@@ -258,15 +258,24 @@ def test_friction_falls_from_each_device_to_where_the_wire_is_held() -> None:
     assert (along[0] < 0, along[1] < 0) == (True, False)  # the anchor holds the contact wire alone
 
 
-def test_friction_lowers_wave_speed_and_the_pull_of_arms() -> None:
+def test_friction_lowers_wave_speed_and_lateral_pulls() -> None:
     line = section(6, "re330", begin=WEIGHTS, end=cf.SectionEnd(kind="weights", efficiency=0.9), midpoint=2)
     full = line.replace(end=WEIGHTS)
     ratio = slowest_contact_wire(line).wave_speed / slowest_contact_wire(full).wave_speed
     assert ratio == pytest.approx(np.sqrt(0.9), rel=1e-12)
     assert line.lateral_pulls[2:-1] == pytest.approx(0.9 * full.lateral_pulls[2:-1], rel=1e-12)
+
+
+def test_arms_pull_less_by_friction() -> None:
+    """Droppers plumb, so that arms alone hold the wire to the side: T (y' before − y' behind) of each arm."""
+    ends = {"begin": WEIGHTS, "end": cf.SectionEnd(kind="weights", efficiency=0.9), "midpoint": 2}
+    line = section(6, "en50318_2018_ac_simple", **ends)
+    line = line.replace(supports=tuple(s.replace(messenger_stagger="follows") for s in line.supports))
+    full = line.replace(end=WEIGHTS)
     less, more = (-cf.find_form(each).steady_arm_lateral_forces[2:-1] for each in (line, full))
+    assert less == pytest.approx(line.lateral_pulls[2:-1], rel=5e-3)
     by_hand = (full.lateral_pulls - line.lateral_pulls)[2:-1]
-    assert more - less == pytest.approx(by_hand, rel=0.025)  # 2 % of it are in how the droppers lean
+    assert more - less == pytest.approx(by_hand, rel=2.5e-3)
 
 
 def test_the_tension_of_fixed_wires_is_not_judged(pantograph: cf.Pantograph) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.statics.rules import check_links, check_pulls, check_room, check_stretch
+from catenary_fe.statics.rules import check_arms, check_pulls, check_room, check_stretch
 
 
 @pytest.fixture
@@ -70,22 +70,36 @@ def test_a_dropper_far_too_soft_is_named_by_its_stiffness(reference):
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_links_need_a_pull(linked, side):
-    check_links(linked, forces(1.0 * side, 0.5))
+    check_arms(linked, forces(1.0 * side, 0.5))
     with pytest.raises(cf.InputError, match=r"support 3: no lateral force on the steady arm \(0\.99 N\)"):
-        check_links(linked, forces(0.99 * side, 0.5))
+        check_arms(linked, forces(0.99 * side, 0.5))
 
 
 def test_links_stand_up_by_60_degrees_at_most(linked):
-    check_links(linked, forces(100.0, 100 * np.tan(np.radians(59.9))))
+    check_arms(linked, forces(100.0, 100 * np.tan(np.radians(59.9))))
     with pytest.raises(cf.InputError, match="support 3: the steady arm would stand up by 60°"):
-        check_links(linked, forces(100.0, 100 * np.tan(np.radians(60.1))))
+        check_arms(linked, forces(100.0, 100 * np.tan(np.radians(60.1))))
     with pytest.raises(cf.InputError, match="support 4: the steady arm would stand up by 80°"):
-        check_links(linked, forces(100.0, 100 * np.tan(np.radians(80)), support=3))
+        check_arms(linked, forces(100.0, 100 * np.tan(np.radians(80)), support=3))
+
+
+def test_arms_do_not_hold_the_wire_down(linked, reference):
+    check_arms(linked, forces(100.0, -1.0))
+    with pytest.raises(
+        cf.InputError, match="support 3: the steady arm would have to hold the contact wire down"
+    ):
+        check_arms(linked, forces(100.0, -1.1))
+    low = reference.supports[4].replace(contact_wire_height=reference.contact_wire_height - 0.5)
+    supports = (*reference.supports[:4], low, *reference.supports[5:])
+    with pytest.raises(
+        cf.InputError, match="support 5: the steady arm would have to hold the contact wire down"
+    ):
+        cf.find_form(reference.replace(supports=supports))
 
 
 def test_links_pull_to_their_own_side(linked):
     left = linked.supports[2].replace(steady_arm=linked.supports[2].steady_arm.replace(side="left"))
     line = linked.replace(supports=(*linked.supports[:2], left, *linked.supports[3:]))
-    check_links(line, forces(2.0, 1.0))
+    check_arms(line, forces(2.0, 1.0))
     with pytest.raises(cf.InputError, match="support 3: the arm on the left would have to push with 2 N"):
-        check_links(line, forces(-2.0, 1.0))
+        check_arms(line, forces(-2.0, 1.0))
