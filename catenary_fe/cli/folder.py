@@ -202,13 +202,15 @@ class InputFiles:
 
     layout : bytes of the layout file
     pantographs : names in the library, or bytes of files
+    conditions : bytes of their file, if there is one
     """
 
     layout: bytes
     pantographs: tuple[str | bytes, ...]
+    conditions: bytes | None = None
 
     @classmethod
-    def read(cls, layout: str, pantographs: Sequence[str]) -> InputFiles:
+    def read(cls, layout: str, pantographs: Sequence[str], conditions: str | None = None) -> InputFiles:
         """Read the files named on the command line; names that are no files are the library's.
 
         Raises InputError for a layout that comes through a pipe, which was read already.
@@ -224,6 +226,7 @@ class InputFiles:
                 path.read_bytes() if path.is_file() else name
                 for path, name in zip(paths, pantographs, strict=True)
             ),
+            Path(conditions).read_bytes() if conditions else None,
         )
 
     def keep(self, folder: Folder, run: Run, options: Sequence[str]) -> None:
@@ -237,6 +240,9 @@ class InputFiles:
             if isinstance(given, bytes):
                 files[name] = given
             words += ["--pantograph", name]
+        if self.conditions is not None:
+            files["conditions.toml"] = self.conditions
+            words += ["--conditions", "conditions.toml"]
         for name, content in files.items():
             (folder.path / name).write_bytes(content)
         sums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
@@ -268,6 +274,7 @@ def recorded_inputs(run: Run) -> dict[str, Any]:
     return {
         "speed_kmh": round(3.6 * run.speed, 9),
         "method": run.method,
+        "conditions": json.loads(attrs["conditions"]) if "conditions" in attrs else None,
         "positions_m": run.data["position"].values[:, 0].tolist(),
         "catenary": json.loads(attrs["catenary"]),
         "pantographs": json.loads(attrs["pantographs"]),

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from catenary_fe.cli.cases import cases
 from catenary_fe.cli.design import form, info, modes, static
 from catenary_fe.cli.layouts import layout
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
@@ -57,6 +58,7 @@ _SHORT_HELP = {
     layout: "Make layouts, from tables or by rules.",
     form: "Dropper lengths and the static shape.",
     static: "Elasticity along the line.",
+    cases: "The line under wind, ice and temperature.",
     modes: "Eigenfrequencies and mode shapes.",
     run: "Run pantographs along a layout.",
     sweep: "Runs over speeds, pantographs and values of a layout.",
@@ -70,7 +72,7 @@ _SHORT_HELP = {
     paper: "The figures of the paper, computed and drawn.",
     validate: "Computed beside reference values.",
     selfcheck: "Whether this installation computes what it should.",
-    schema: "JSON Schema of layout and pantograph files.",
+    schema: "JSON Schema of layout, pantograph and conditions files.",
     completion: "Completion script for the shell.",
 }
 for command, text in _SHORT_HELP.items():

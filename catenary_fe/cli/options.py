@@ -12,7 +12,15 @@ import click
 from click.shell_completion import CompletionItem
 
 from catenary_fe.cli.terminal import Answer
-from catenary_fe.layout import Catenary, PowerSystem, load_catenary
+from catenary_fe.layout import (
+    Catenary,
+    Conditions,
+    InputError,
+    PowerSystem,
+    counted,
+    load_catenary,
+    load_conditions,
+)
 from catenary_fe.layout.files import MOST_SPANS
 from catenary_fe.results.signal import FilterKind
 
@@ -68,6 +76,22 @@ def answer(what: str = "Folder for results and pictures.", **others: Any) -> Dec
         return wrapped
 
     return decorated
+
+
+def conditions(what: str, **others: Any) -> Decorator:
+    """``--conditions``, which names a file."""
+    return click.option("--conditions", type=click.Path(), metavar="FILE", help=what, **others)
+
+
+def read_conditions(path: str) -> Conditions:
+    """The circumstances of one run. Raises InputError for a file with several cases."""
+    given = load_conditions(path)
+    if given.case:
+        raise InputError(
+            f"{path}: has {counted(len(given.case), 'case')} beside its own circumstances, and a run takes"
+            " one; leave out [[case]], or give the command cases"
+        )
+    return given
 
 
 planar = flag("--planar", "Take the layout's equivalent in the vertical plane.")

@@ -99,12 +99,13 @@ def selfcheck(as_json: bool, quiet: bool) -> int:
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe schema layout > layout.schema.json")
-@click.argument("kind", type=click.Choice(["layout", "pantograph"]))
+@click.argument("kind", type=click.Choice(["layout", "pantograph", "conditions"]))
 def schema(kind: str) -> None:
-    """Print the JSON Schema with which an editor completes and checks layout or pantograph files."""
-    from catenary_fe.layout import layout_schema, pantograph_schema
+    """Print the JSON Schema with which an editor completes and checks files of this kind."""
+    from catenary_fe.layout import conditions_schema, layout_schema, pantograph_schema
 
-    print_json(layout_schema() if kind == "layout" else pantograph_schema())
+    made = {"layout": layout_schema, "pantograph": pantograph_schema, "conditions": conditions_schema}
+    print_json(made[kind]())
 
 
 @click.command(

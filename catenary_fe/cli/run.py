@@ -79,6 +79,7 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
     help="Interval of the stored shapes of the whole wires, rounded to time steps, 0 for none; unset: 10 with"
     " -o, which reports and films need.",
 )
+@options.conditions("Wind, ice and temperature that the line is under.")
 @options.flag("--energy", "Record energy and check its balance with the method exudyn, too: a tenth slower.")
 @options.flag("--elasticity", "Compute the elasticity of the evaluated spans, too, and keep it with the run.")
 @options.criteria("Judge the run by the limits of this system; exit code 1 on a miss.")
@@ -95,6 +96,7 @@ def run(  # long: an argument an option
     filter_kind: Any,
     spans: list[int] | None,
     store_wire_ms: float | None,
+    conditions: str | None,
     energy: bool,
     planar: bool,
     elasticity: bool,
@@ -104,13 +106,15 @@ def run(  # long: an argument an option
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
+    from catenary_fe.statics import settle
     from catenary_fe.studies import simulate
 
     catenary, output = options.read_layout(layout, planar), answer.folder
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
     pantographs = _pantographs(names, positions)
-    files = InputFiles.read(layout, names) if output else InputFiles(b"", ())
+    weather = options.read_conditions(conditions) if conditions else None
+    files = InputFiles.read(layout, names, conditions) if output else InputFiles(b"", ())
     if store_wire_ms and not output:
         raise click.UsageError("--store-wire-ms has no effect without -o, whose folder keeps the shapes")
     if store_wire_ms is None:
@@ -118,6 +122,8 @@ def run(  # long: an argument an option
     mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
     time = TimeSettings(step=time_step_ms / 1e3)
     with static_shape(catenary, answer, mesh) as (shape, folder):
+        if weather:
+            shape = settle(shape, weather)
         given = _options(click.get_current_context())
         kept = partial_kept(output, shape, files, given, filter_kind)
         with progress_bar(f"run at {speed_kmh:g} km/h", not answer.quiet) as progress, kept:
@@ -161,7 +167,7 @@ def _options(context: click.Context) -> list[str]:
     for option in context.command.params:
         name = option.name or ""
         given = context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
-        if not given or name in ("layout", "names", "output", "as_json", "quiet"):
+        if not given or name in ("layout", "names", "conditions", "output", "as_json", "quiet"):
             continue
         value = context.params[name]
         if value is True:

@@ -93,7 +93,7 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
 
 def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
     found = []
-    pulls = element_pulls(catenary, mesh)
+    pulls, kinds = element_pulls(catenary, mesh), wire_kinds(catenary, mesh)
     for n, (first, wire, pull) in enumerate(zip(mesh.first_nodes, mesh.wires, pulls, strict=False)):
         clamps = [mesh.lower.node[mesh.lower.on(n)], mesh.upper.node[mesh.upper.on(n)]]
         clamps += [wire.supports, np.array([0, wire.x.size - 1])]
@@ -102,7 +102,19 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
         clamps.append(np.searchsorted(wire.x, np.array(stations(catenary, mesh.wire_name(n))) - 1e-6))
         fixed = np.unique(np.concatenate(clamps))
         contact = n < mesh.contact_wires
-        found.append(WireNodes(mesh.wire_name(n), int(first), wire.x, contact, wire.supports, fixed, pull))
+        found.append(
+            WireNodes(
+                name=mesh.wire_name(n),
+                first=int(first),
+                x=wire.x,
+                contact=contact,
+                supports=wire.supports,
+                clamps=fixed,
+                tension=pull,
+                kind="stitch_wire" if n >= mesh.first_stitch else wire_field(mesh, n),
+                wire=kinds[n],
+            )
+        )
     return tuple(found)
 
 

@@ -28,6 +28,8 @@ from catenary_fe.fe.cable import (
 )
 from catenary_fe.fe.contact import BaseLine, ContactPath
 from catenary_fe.fe.spring import FIXED, Springs
+from catenary_fe.layout import Wire
+from catenary_fe.layout.conditions.effect import WireKind
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -45,6 +47,7 @@ class WireNodes:
     clamps : likewise where something is fixed to it, its ends among them: there its tension may step
     tension : [N], shape (nodes - 1,), nominal pull along the track in each element
     section : number of its tension section, from 0
+    kind, wire : what it is called in a layout, and its parameters; none of a wire by itself
     """
 
     name: str
@@ -55,6 +58,8 @@ class WireNodes:
     clamps: Integers
     tension: Floats
     section: int = 0
+    kind: WireKind = "contact_wire"
+    wire: Wire | None = None
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,15 @@
 from catenary_fe.layout import library
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.conditions import (
+    Conditions,
+    Effect,
+    Ice,
+    Wind,
+    WirePart,
+    conditions_schema,
+    load_conditions,
+)
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
@@ -45,10 +54,13 @@ __all__ = [
     "AttachedPantograph",
     "Catenary",
     "CatenaryError",
+    "Conditions",
     "DescribedPantograph",
     "Dropper",
+    "Effect",
     "ElasticPantograph",
     "Equipment",
+    "Ice",
     "InputError",
     "Line",
     "MeasuredWire",
@@ -67,9 +79,12 @@ __all__ = [
     "Support",
     "Termination",
     "Wear",
+    "Wind",
     "Wire",
+    "WirePart",
     "build_line",
     "catenary_from_tables",
+    "conditions_schema",
     "counted",
     "dropper_positions",
     "ends_in_words",
@@ -79,6 +94,7 @@ __all__ = [
     "layout_warnings",
     "library",
     "load_catenary",
+    "load_conditions",
     "load_pantograph",
     "pantograph_schema",
     "read_catenary",

@@ -21,6 +21,7 @@ from catenary_fe.layout.parameters import (
     Number,
     Parameters,
     Positive,
+    Temperature,
     Text,
     refuse,
 )
@@ -104,6 +105,8 @@ class Catenary(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    installation_temperature: Temperature = 15.0
+    """[°C] at which the line hangs as designed; what is warmer or colder, conditions say"""
     cant_base: Positive = 1.5
     """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()

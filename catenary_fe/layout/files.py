@@ -31,6 +31,7 @@ from catenary_fe.layout.parameters import (
     Number,
     Parameters,
     Positive,
+    Temperature,
     Text,
     problem_lines,
 )
@@ -139,6 +140,8 @@ class LayoutFile(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    installation_temperature: Temperature = 15.0
+    """[°C] at which the line hangs as designed; what is warmer or colder, conditions say"""
     cant_base: Positive = 1.5
     """[m] between the rails' middles, over which `cant` is measured"""
     damping: RayleighDamping = RayleighDamping()

@@ -56,6 +56,7 @@ Positive = Annotated[
     float, Field(strict=True, allow_inf_nan=False, gt=0, le=LARGEST), AfterValidator(_not_tiny)
 ]
 Lateral = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-10, le=10)]  # [m]; refuses mm
+Temperature = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-100, le=150)]  # [°C]; refuses K
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Share = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=1)]
 Text = Annotated[str, Field(strict=True)]

@@ -34,6 +34,10 @@ class Wire(Parameters):
     """[N] EA, cross-section times Young's modulus"""
     bending_stiffness: NonNegative = 0.0
     """[N m²] EI"""
+    diameter: Positive | None = None
+    """[m] outside, which wind and ice take; unset: estimated from the mass as of copper"""
+    thermal_expansion: NonNegative = 1.7e-5
+    """[1/K] lengthening by temperature: of copper and bronze"""
     name: Text = ""
     """what the wire is, e.g. 'AC-150'"""
     source: Text = ""
@@ -352,6 +356,9 @@ class Support(Parameters):
     """[N/m] of the cantilever sideways; unset: rigid"""
     messenger_lateral_damping: NonNegative = 0.0
     """[N s/m] sideways, beside the stiffness"""
+    mast_position: Number | None = None
+    """[m] to the left of the track's centre (+y) of the hinge that the cantilever swings about when the wires
+    move along the track; unset: it moves along with them and draws no wire to the side"""
     steady_arm: SteadyArm | None = None
     """registration of the contact wire; unset: the contact wire is free here"""
     contact_wire_height: Positive | None = None

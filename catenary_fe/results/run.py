@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, InputError, read_catenary, recorded_pantograph
 from catenary_fe.layout.arguments import checked, span_numbers, whole
+from catenary_fe.layout.conditions import Conditions
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.check import FAILED, Check, Partial
 from catenary_fe.results.files import ATTRIBUTE, atomic_write, checksum
@@ -68,6 +69,12 @@ class Run:
     def catenary(self) -> Catenary:
         """The catenary that was run on."""
         return read_catenary(json.loads(self.data.attrs["catenary"]))
+
+    @property
+    def conditions(self) -> Conditions | None:
+        """What the surroundings did to the line; None in still air at the temperature of installation."""
+        text = self.data.attrs.get("conditions")
+        return Conditions.model_validate_json(text) if text else None
 
     @property
     def pantographs(self) -> tuple[AnyPantograph, ...]:
@@ -289,6 +296,7 @@ class Run:
         return ({"partial": self.partial.as_dict()} if self.partial else {}) | {
             "speed_kmh": round(3.6 * self.speed, 9),
             "method": self.method,
+            "conditions": self.conditions.name if self.conditions else None,
             "evaluated_spans": list(self.evaluated_spans),
             "dropper_lengths_given": self.catenary.gives_dropper_lengths,
             "filter": filter,

@@ -16,6 +16,7 @@ from catenary_fe.fe.mesh import Mesh, MeshSettings
 from catenary_fe.fe.system import System
 from catenary_fe.layout import Catenary
 from catenary_fe.layout.arguments import on_the_wire
+from catenary_fe.layout.conditions import Conditions
 from catenary_fe.layout.installed import changes_in_words
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.statics.schedules import DropperRow, SupportRow, dropper_rows, support_rows
@@ -72,6 +73,22 @@ class HangingWire:
         return found
 
 
+@dataclass(frozen=True)
+class Settlement:
+    """How a line came to where it hangs under conditions.
+
+    before : as it was hung
+    conditions : or None of a script's own effects
+    moved : [m and 1], shape (all coordinates,), since then
+    springs : [N], shape (all coordinates,), what springs to the ground pull more since then
+    """
+
+    before: Shape
+    conditions: Conditions | None
+    moved: Floats
+    springs: Floats
+
+
 @changed_by_copy
 @dataclass(frozen=True)
 class Shape:
@@ -81,6 +98,7 @@ class Shape:
     dropper_forces : [N], shape (droppers,)
     installed_lengths : [m], shape (droppers,), of the loaded droppers
     has_effect : whether something was added to the system, see :meth:`with_effect`
+    settlement : of a line under conditions, what brought it there
     """
 
     catenary: Catenary
@@ -91,6 +109,7 @@ class Shape:
     dropper_forces: Floats
     installed_lengths: Floats
     has_effect: bool = field(default=False, kw_only=True)
+    settlement: Settlement | None = field(default=None, kw_only=True)
 
     @cached_property
     def system(self) -> System:

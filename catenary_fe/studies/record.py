@@ -77,6 +77,12 @@ def make_run(
     _add_wire_shapes(variables, coordinates, shape, history)
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, case.speed, time, method)
+    settled = shape.settlement
+    if settled and settled.conditions:
+        attributes["conditions"] = settled.conditions.model_dump_json(exclude_unset=True)
+        attributes["title"] += f", {settled.conditions.name}"
+        attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["conditions"])
+    scripted |= shape.has_effect and not (settled and settled.conditions)
     attributes["warnings"] = json.dumps([*warnings, *_brief(history.notes)])
     if scripted:
         attributes["model"] = "of a script"
@@ -201,12 +207,21 @@ def run_key(
     return {
         "form": CHECKPOINT_FORM,
         "layout": _sha256(shape.catenary.model_dump_json()),
+        "conditions": _conditions_key(shape),
         "pantographs": [p.model_dump(mode="json") for p in pantographs],
         "speed": speed,
         "positions": start.tolist(),
         "settings": {"mesh": asdict(shape.mesh_settings), "time": asdict(time), "store_wire": store_wire},
         "versions": {**_versions(), "numba": version("numba")},
     }
+
+
+def _conditions_key(shape: Shape) -> str:
+    """What moved the line, also where a script's effects did."""
+    settled = shape.settlement
+    if settled and settled.conditions:
+        return settled.conditions.model_dump_json()
+    return hashlib.sha256(settled.moved.tobytes()).hexdigest() if settled else ""
 
 
 @cache

@@ -11,7 +11,7 @@ from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.layout import InputError
 from catenary_fe.results import Run
-from catenary_fe.statics import Shape, find_form
+from catenary_fe.statics import Shape, find_form, settle
 from catenary_fe.studies.simulate import OF_A_SCRIPT, Method, simulate
 
 
@@ -77,7 +77,8 @@ def rerun(run: Run, progress: Callable[[float], None] | None = None) -> Rerun:
 def shape_of(run: Run) -> Shape:
     """The static shape that a run started from, found again on its mesh. Raises InputError."""
     mesh, _ = _settings(run)
-    return find_form(run.catenary, mesh)
+    shape = find_form(run.catenary, mesh)
+    return settle(shape, run.conditions) if run.conditions else shape
 
 
 def _settings(run: Run) -> tuple[MeshSettings, TimeSettings]:

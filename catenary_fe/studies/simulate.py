@@ -19,9 +19,10 @@ from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted
 from catenary_fe.layout.arguments import checked, number, one_of
+from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
-from catenary_fe.statics import Shape
+from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine, MeanForce, aimed, share_of
 from catenary_fe.studies.record import kept_when_stopped, make_run, run_key
@@ -59,6 +60,7 @@ def simulate(  # long by what it documents
     energy: bool = False,
     checkpoint: str | Path | None = None,
     model: ExudynModel | None = None,
+    conditions: Conditions | Sequence[Effect] | None = None,
 ) -> Run:
     """Run pantographs from static contact along the line at constant speed.
 
@@ -81,6 +83,7 @@ def simulate(  # long by what it documents
     model : with the method "exudyn", the multibody model of this shape and these pantographs to run
         (:func:`exudyn_model`), with what a script changed in it and attached to it; positions count attached
         pantographs last
+    conditions : the line is settled under them first (:func:`settle`), or effects, a script's own among them
 
     Raises InputError for a speed in the wrong unit, energies, a checkpoint or a model of another method, a
     checkpoint of another run, a model of another line, a run that would end beyond the line or take more
@@ -88,6 +91,10 @@ def simulate(  # long by what it documents
     panhead, SolverError where a solve fails or the mean force is not reached, RunInterrupted after Ctrl-C;
     both have the run until then as ``partial``.
     """
+    if conditions is not None:
+        if model is not None:
+            raise InputError("conditions: a model has those of its shape; give exudyn_model a settled shape")
+        shape = settle(shape, conditions)
     runs: Sequence[AnyPantograph] = pantographs
     if model is not None:
         _check_model(model, shape, pantographs, method, energy=energy)

@@ -1,5 +1,6 @@
 """Pictures. The only room that imports matplotlib; nothing is shown on a screen, axes are returned."""
 
+from catenary_fe.views.cases import plot_cases
 from catenary_fe.views.comparison import (
     plot_force_comparison,
     plot_sweep_deviation,
@@ -24,9 +25,9 @@ from catenary_fe.views.static import plot_elasticity, plot_mode, plot_spectrum, 
 from catenary_fe.views.waves import plot_family, plot_run_waves, plot_space_time, plot_surface
 
 __all__ = [
-    "film", "plot_contact_force", "plot_contact_lateral", "plot_criteria", "plot_dropper_forces",
-    "plot_elasticity",
-    "plot_energy", "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
+    "film", "plot_cases", "plot_contact_force", "plot_contact_lateral", "plot_criteria",
+    "plot_dropper_forces", "plot_elasticity", "plot_energy",
+    "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
     "plot_layout",
     "plot_mode", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum", "plot_static_shape",
     "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",

@@ -1,0 +1,113 @@
+"""Today's circumstances of a line: temperature, wind, ice. How it hangs without them is the layout's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+
+from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.conditions.effect import Effect, TemperatureOverX, WirePart, over_x
+from catenary_fe.layout.conditions.ice import Ice, IceMass
+from catenary_fe.layout.conditions.temperature import Warming
+from catenary_fe.layout.conditions.wind import Drag, Wind
+from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.parameters import Parameters, Positive, Text, problem_lines
+from catenary_fe.layout.toml import read_toml
+
+
+class Conditions(Parameters):
+    """What the surroundings do to a line, and perhaps further cases that change some of it."""
+
+    model_config = ConfigDict(title="catenary_fe conditions")
+
+    name: Text = "conditions"
+    """what tables and pictures call them"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    temperature: TemperatureOverX | None = None
+    """[°C] of the wires, or a table over x, for a tunnel's mouth: [[0, 5], [800, 12]]; unset: as when the
+    line was hung"""
+    wind: Wind | None = None
+    """on the wires; unset: still air"""
+    ice: Ice | None = None
+    """on the wires; unset: none"""
+    allowed_offset: Positive | None = None
+    """[m] of the contact wire from the track's centre, which `cases` judges; unset: any"""
+    case: tuple[dict[str, Any], ...] = Field(default=(), json_schema_extra={"items": {"type": "object"}})
+    """for the command `cases`: further circumstances, each with a name of its own, that change these"""
+
+    @model_validator(mode="after")
+    def _cases_are_sound(self) -> Self:
+        names = [self.name]
+        for number, change in enumerate(self.case, start=1):
+            if "name" not in change:
+                raise ValueError(f"case {number}: name is missing; add it: what tables and pictures call it")
+            if "case" in change:
+                raise ValueError(f"case {number}: a case has no cases of its own")
+            try:
+                names.append(self._changed(change).name)
+            except InputError as error:
+                raise ValueError("; ".join(f"case {number}: {line}" for line in error.problems)) from None
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise ValueError(f"case: the name {twice[0]!r} stands for two cases; give each its own")
+        return self
+
+    def _changed(self, change: dict[str, Any]) -> Conditions:
+        return Conditions(**_merged(self.model_dump(exclude={"case"}, exclude_unset=True), change))
+
+    @property
+    def cases(self) -> list[Conditions]:
+        """These, without further cases, and then each of those."""
+        return [self.replace(case=()), *(self._changed(change) for change in self.case)]
+
+    def effects(self, installation_temperature: float) -> list[Effect]:
+        """What they do to the wires.
+
+        installation_temperature : [°C] at which the line was hung
+        """
+        found: list[Effect] = []
+        if self.temperature is not None:
+            found.append(Warming(self.temperature, installation_temperature))
+        if self.ice:
+            found.append(IceMass(self.ice))
+        if self.wind:
+            found.append(Drag(self.wind, self.ice))
+        return found
+
+
+def _merged(record: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
+    """A record with what a change says; tables inside are changed key by key."""
+    found = dict(record)
+    for key, value in change.items():
+        inner = found.get(key)
+        found[key] = _merged(inner, value) if isinstance(value, dict) and isinstance(inner, dict) else value
+    return found
+
+
+@checked
+def load_conditions(path: str | Path) -> Conditions:
+    """Conditions from a TOML file. Raises InputError, one line for each fault that the file has."""
+    record = read_toml(Path(path), "conditions")
+    try:
+        return Conditions.model_validate(record)
+    except ValidationError as error:
+        raise InputError(*problem_lines(error, Conditions, where=str(path))) from None
+
+
+def conditions_schema() -> dict[str, Any]:
+    """JSON Schema of a conditions file."""
+    return Conditions.model_json_schema()
+
+
+__all__ = [
+    "Conditions",
+    "Effect",
+    "Ice",
+    "Wind",
+    "WirePart",
+    "conditions_schema",
+    "load_conditions",
+    "over_x",
+]

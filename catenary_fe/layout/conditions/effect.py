@@ -1,0 +1,124 @@
+"""What the surroundings do to a wire: the answers that an effect gives, and where it is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import PlainValidator
+
+from catenary_fe.layout.parameters import LARGEST, shorten
+from catenary_fe.layout.parts import Wire
+
+Floats = NDArray[np.float64]
+Signal = Callable[[Floats], Floats]
+WireKind = Literal["contact_wire", "messenger_wire", "stitch_wire"]
+COPPER = 8900.0  # [kg/m³]
+_OR_TABLE = ", or a list of [x, value] pairs"
+ROPE_FILL = 0.76  # of a rope's circle: 19 and 37 wires
+
+
+@dataclass(frozen=True)
+class WirePart:
+    """Places on one wire, of which an effect says what it does there.
+
+    kind : "contact_wire", "messenger_wire" or "stitch_wire"
+    wire : its parameters
+    x : [m], shape (places,), along the line
+    """
+
+    kind: WireKind
+    wire: Wire
+    x: Floats
+
+    @property
+    def diameter(self) -> float:
+        """[m] outside: the wire's own, else that of copper of its mass, of a rope but for contact wires."""
+        fill = 1.0 if self.kind == "contact_wire" else ROPE_FILL
+        return self.wire.diameter or float(np.sqrt(4 * self.wire.mass_per_length / (np.pi * COPPER * fill)))
+
+    @property
+    def nothing(self) -> Floats:
+        """Shape (3, places), zeros."""
+        zeros: Floats = np.zeros((3, self.x.size))
+        return zeros
+
+
+class Effect:
+    """Something that the surroundings do to the wires. What a subclass does not answer is nothing.
+
+    Effects add up; none may depend on another, nor on their order. Three rows are along the track, to the
+    left and up.
+    """
+
+    def load(self, part: WirePart) -> Floats:
+        """[N/m], shape (3, places), constant."""
+        return part.nothing
+
+    def mass(self, part: WirePart) -> Floats:
+        """[kg/m], shape (places,), that the wire carries; its weight is a load, too."""
+        found: Floats = part.nothing[0]
+        return found
+
+    def damping(self, part: WirePart) -> Floats:
+        """[N s/m²], shape (3, places), against the wire's velocity."""
+        return part.nothing
+
+    def strain(self, part: WirePart) -> Floats:
+        """[1], shape (places,): by how much the wire lengthens without force."""
+        found: Floats = part.nothing[0]
+        return found
+
+    def in_time(self, part: WirePart) -> Sequence[tuple[Floats, Signal]]:
+        """Loads [N/m], shape (3, places), each with its signal of times [s], shape (times,)."""
+        return ()
+
+
+def _over_x(least: float, most: float) -> PlainValidator:
+    """A number between two bounds, or a table of [x, number] pairs in order."""
+
+    def check(value: Any) -> float | Table:
+        if not isinstance(value, (list, tuple)):
+            return _number(value, least, most, "")
+        if not value:
+            raise ValueError("is empty; give [x, value] pairs, or a number")
+        found: list[tuple[float, float]] = []
+        for n, pair in enumerate(value, start=1):
+            if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+                raise ValueError(f"entry {n}: {shorten(pair)}: must be a pair [x, value]")
+            x = _number(pair[0], -LARGEST, LARGEST, f"entry {n}: x ")
+            if found and x <= found[-1][0]:
+                raise ValueError(
+                    f"entry {n}: x = {x:g} m does not come after {found[-1][0]:g} m; list the places in order"
+                )
+            found.append((x, _number(pair[1], least, most, f"entry {n}: value ")))
+        return tuple(found)
+
+    return PlainValidator(check, json_schema_input_type=float | list[tuple[float, float]])
+
+
+def _number(value: Any, least: float, most: float, what: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
+        rule = "a number" + (f" from {least:g}" if least > -LARGEST else "")
+        rule += f" to {most:g}" if most < LARGEST else ""
+        raise ValueError(f"{what}{shorten(value)}: must be {rule}" + _OR_TABLE * (not what))
+    return float(value)
+
+
+Table = tuple[tuple[float, float], ...]
+NumberOrTable = float | Table
+OverX = Annotated[NumberOrTable, _over_x(0.0, LARGEST)]
+SpeedOverX = Annotated[NumberOrTable, _over_x(0.0, 100.0)]  # [m/s]
+TemperatureOverX = Annotated[NumberOrTable, _over_x(-100.0, 150.0)]
+
+
+def over_x(values: NumberOrTable, x: Floats) -> Floats:
+    """Shape of x: a number, or a table over places [m], straight between them and even beyond its ends."""
+    if isinstance(values, tuple):
+        at, of = np.array(values).T
+        found: Floats = np.interp(x, at, of)
+        return found
+    return np.full(x.shape, float(values))

@@ -1,0 +1,67 @@
+"""Wind on the wires: drag across the line, and how it damps them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from catenary_fe.layout.conditions.effect import Effect, Floats, SpeedOverX, WirePart, over_x
+from catenary_fe.layout.conditions.ice import Ice, iced_diameter
+from catenary_fe.layout.parameters import Parameters, Positive
+
+Direction = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-360, le=360)]
+
+
+class Wind(Parameters):
+    """Wind, level; what blows along the line does nothing.
+
+    Its drag on a wire is ½ ρ v² C G d a metre, v across the line, d the wire's diameter, with ice on it if
+    there is any (Kießling, Puschmann, Schmieder: Contact Lines for Electric Railways; EN 50119).
+    """
+
+    speed: SpeedOverX
+    """[m/s] at the wires, or a table over x: [[0, 20], [300, 29]]"""
+    direction: Direction = 90.0
+    """[°] to which it blows from the line's direction: 90: from the right to the left; -90: to the right"""
+    air_density: Positive = 1.25
+    """[kg/m³]"""
+    drag_coefficient: Positive = 1.0
+    """[1] of a wire"""
+    span_factor: Annotated[float, Field(strict=True, gt=0, le=1)] = 1.0
+    """[1] of the load, where the speed is that of gusts shorter than a span; 0.75 on tensioned wires"""
+
+    def across(self, x: Floats) -> Floats:
+        """[m/s], shape of x: to the left."""
+        return over_x(self.speed, x) * float(np.sin(np.radians(self.direction)))
+
+    def resistance(self, part: WirePart, ice: Ice | None) -> Floats:
+        """[N s²/m³], shape (places,): drag a metre over the speed's square."""
+        per_diameter = 0.5 * self.air_density * self.drag_coefficient * self.span_factor
+        return per_diameter * iced_diameter(ice, part)
+
+
+@dataclass(frozen=True)
+class Drag(Effect):
+    """Steady wind: drag, and that wires which move through it are damped (quasi-steady).
+
+    A wire that moves with v feels the wind without v: drag falls by 2 k u v to the side, k u v up and down.
+    """
+
+    wind: Wind
+    ice: Ice | None = None
+
+    def load(self, part: WirePart) -> Floats:
+        """[N/m], shape (3, places)."""
+        found, across = part.nothing, self.wind.across(part.x)
+        found[1] = self.wind.resistance(part, self.ice) * np.abs(across) * across
+        return found
+
+    def damping(self, part: WirePart) -> Floats:
+        """[N s/m²], shape (3, places)."""
+        found, across = part.nothing, np.abs(self.wind.across(part.x))
+        drag = self.wind.resistance(part, self.ice) * across
+        found[1], found[2] = 2 * drag, drag
+        return found

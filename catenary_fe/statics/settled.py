@@ -1,0 +1,187 @@
+"""The same line under other circumstances: where its wires hang under conditions, from which runs start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from catenary_fe.fe.spring import FIXED
+from catenary_fe.fe.surroundings import surrounded
+from catenary_fe.fe.system import System, WireNodes
+from catenary_fe.layout import Catenary, InputError, Line, SolverError
+from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.conditions import Conditions, Effect
+from catenary_fe.statics.newton import solve_loaded
+from catenary_fe.statics.shape import HangingWire, Settlement, Shape
+
+Floats = NDArray[np.float64]
+_PASSES = 30
+_STILL = 1e-6  # [m] by which cantilevers may still swing
+
+
+@checked
+def settle(shape: Shape, conditions: Conditions | Sequence[Effect]) -> Shape:
+    """The line at rest under conditions: same droppers, same devices, other places and tensions.
+
+    What :func:`find_form` found is hung at the temperature of installation, in still air. Weights keep their
+    pull and travel; wires between fixed ends change their tension. Cantilevers swing with the messenger wire
+    and take the steady arms' pivots along. Modes, statics and runs of every engine start from what this
+    returns.
+
+    conditions : or effects, a script's own among them (:class:`catenary_fe.layout.conditions.Effect`)
+
+    Raises InputError for wind on a line that is modelled in the plane, and for a shape that conditions have
+    moved already, SolverError where no equilibrium is found.
+    """
+    if shape.settlement:
+        raise InputError("settle: the shape is already under conditions; begin with what find_form returned")
+    given, effects = _taken(conditions, shape.catenary.installation_temperature)
+    outside = surrounded(shape.system, effects)
+    system, moved = _at_rest(outside, shape.catenary)
+    springs = system.force - outside.force - system.ground_stiffness * moved
+    return _shape(shape, system, Settlement(shape, given, moved, springs))
+
+
+def _taken(
+    conditions: Conditions | Sequence[Effect], installed: float
+) -> tuple[Conditions | None, list[Effect]]:
+    if isinstance(conditions, Conditions):
+        return conditions, conditions.effects(installed)
+    for effect in conditions:
+        if not isinstance(effect, Effect):
+            raise InputError(
+                f"settle: {type(effect).__name__} is no effect; give Conditions, or objects of a class that"
+                " inherits from Effect"
+            )
+    return None, list(conditions)
+
+
+def _at_rest(system: System, catenary: Catenary) -> tuple[System, Floats]:
+    """The line with its cantilevers where the messenger wire takes them, and displacements, shape (all,)."""
+    cantilevers = _cantilevers(system, catenary)
+    swung, moved = system, np.zeros(system.dof.size)
+    before = np.zeros(len(cantilevers))
+    for _ in range(_PASSES):
+        moved, left = solve_loaded(swung, np.zeros(moved.size), moved)
+        if left is not None:
+            worst = int(np.abs(left).argmax())
+            raise SolverError(
+                f"settle: no equilibrium under these conditions, {np.abs(left).max():.3g} N are left at the"
+                f" {system.name(worst)}; look there for loads and temperatures far from usual values"
+            )
+        shifts = np.array([moved[c.along] for c in cantilevers])
+        if np.abs(shifts - before).max(initial=0.0) < _STILL:
+            return swung, moved
+        swung, before = _swung(system, cantilevers, shifts), shifts
+    raise SolverError("settle: the cantilevers come to no rest; look for arms that nothing pulls")
+
+
+@dataclass(frozen=True)
+class _Cantilever:
+    """A cantilever and what it carries.
+
+    along, across : numbers of the messenger wire's coordinates on it; across is FIXED in the plane
+    arms : numbers of the links whose pivots it carries
+    mast : [m] to the left of the track's centre, or None
+    """
+
+    along: int
+    across: int
+    arms: tuple[int, ...]
+    mast: float | None
+
+
+def _cantilevers(system: System, catenary: Catenary) -> list[_Cantilever]:
+    """Those between the ends of each section: a section's ends are anchored."""
+    sections = catenary.sections if isinstance(catenary, Line) else (catenary,)
+    width, found = 2 * system.axes, []
+    for wire in system.wires:
+        if wire.kind != "messenger_wire":
+            continue
+        below = [w for w in system.wires if w.contact and w.section == wire.section]
+        for number, support in list(enumerate(sections[wire.section].supports))[1:-1]:
+            along = width * (wire.first + int(wire.supports[number]))
+            points = [width * (w.first + int(w.supports[number])) for w in below]
+            arms = tuple(np.flatnonzero(np.isin(system.arms.first, points)).tolist())
+            across = along + 1 if system.spatial else FIXED
+            found.append(_Cantilever(along, across, arms, support.mast_position))
+    return found
+
+
+def _swung(system: System, cantilevers: Sequence[_Cantilever], shifts: Floats) -> System:
+    """The line with its cantilevers moved along the track by shifts [m], and drawn to their masts by that."""
+    pivot, force, reference = system.arms.pivot.copy(), system.force.copy(), system.reference.copy()
+    for cantilever, shift in zip(cantilevers, shifts.tolist(), strict=True):
+        for arm in cantilever.arms:
+            pivot[arm, 0] += shift
+            if system.spatial:
+                pivot[arm, 1] += drawn(cantilever.mast, float(pivot[arm, 1]), shift)
+        if cantilever.across == FIXED:
+            continue
+        aside = drawn(cantilever.mast, float(reference[cantilever.across]), shift)
+        if system.dof[cantilever.across] == FIXED:
+            reference[cantilever.across] += aside
+        else:
+            force[cantilever.across] += system.ground_stiffness[cantilever.across] * aside
+    return replace(system, arms=replace(system.arms, pivot=pivot), force=force, reference=reference)
+
+
+def drawn(mast: float | None, place: float, shift: float) -> float:
+    """[m] to the left by which a point on a cantilever is drawn as it swings along the track.
+
+    mast : [m] to the left of the track's centre, of the hinge; None: it is not drawn
+    place : [m] of the point
+    shift : [m] along the track
+
+    Raises InputError for a shift longer than the cantilever.
+    """
+    if mast is None:
+        return 0.0
+    reach = mast - place
+    if abs(shift) >= abs(reach):
+        raise InputError(
+            f"settle: a wire moves {abs(shift):.2f} m along the track, and the cantilever, hinged at"
+            f" mast_position = {mast:g} m, reaches {abs(reach):.2f} m: it cannot swing so far"
+        )
+    return float(reach - np.sign(reach) * np.sqrt(reach**2 - shift**2))
+
+
+def _shape(shape: Shape, system: System, settlement: Settlement) -> Shape:
+    """The line where it came to rest: from here displacements count, and here engines linearise."""
+    moved = settlement.moved
+    reference = system.reference + moved
+    rows = system.tensions(moved)
+    wires = tuple(
+        replace(wire, x=_along(system, wire, reference), tension=pull)
+        for wire, pull in zip(system.wires, rows, strict=True)
+    )
+    here = replace(
+        system,
+        reference=reference,
+        force=system.force - system.ground_stiffness * moved - system.linear_stiffness @ moved,
+        wires=wires,
+    )
+    span = system.droppers.span(reference)
+    settled = replace(
+        shape,
+        wires=tuple(HangingWire.from_coordinates(_nodes(system, wire, reference)) for wire in wires),
+        dropper_forces=system.droppers.tension(span),
+        installed_lengths=np.linalg.norm(span, axis=1),
+        has_effect=True,
+        settlement=settlement,
+    )
+    settled.__dict__["system"] = here
+    return settled
+
+
+def _nodes(system: System, wire: WireNodes, values: Floats) -> Floats:
+    """Shape (nodes, 2 * axes): a wire's part of values of all coordinates."""
+    width = 2 * system.axes
+    return values[width * wire.first : width * (wire.first + wire.x.size)].reshape(-1, width)
+
+
+def _along(system: System, wire: WireNodes, reference: Floats) -> Floats:
+    return _nodes(system, wire, reference)[:, 0].copy()
