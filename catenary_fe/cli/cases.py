@@ -34,7 +34,7 @@ def cases(
 ) -> int:
     """A LAYOUT at rest under each case of a conditions file: tensions, sags, offsets, supports, devices.
 
-    Exit code 1 where the contact wire leaves the allowed offset of a case.
+    Exit code 1 where the contact wire leaves the allowed offset of a case, or a steady arm has to push.
     """
     from catenary_fe.statics import case_rows, settle
 
@@ -87,6 +87,7 @@ def case_table(row: CaseRows) -> dict[str, Any]:
         "highest_contact_wire_m": row.highest_contact_wire_m,
         "largest_dropper_force_N": row.largest_dropper_force_N,
         "slack_droppers": row.slack_droppers,
+        "pushed_arms": len(row.pushed_arms),
         "largest_cantilever_shift_mm": max(shifts, default=0.0),
         "largest_device_travel_mm": max(travels, default=0.0),
     }

@@ -188,11 +188,14 @@ def _stretch_coupling(system: System, wires: list[_ReducedWire], place: Integers
 
 
 def _swinging_links(system: System, place: Integers) -> SteadyArmBars:
+    """An arm that has swung along the track is seen from along it: shorter, and with what it pulls across."""
     arms, axes = system.arms, system.axes
+    span = arms.span(system.reference)
+    whole, seen = np.linalg.norm(span, axis=1), np.linalg.norm(span[:, -2:], axis=1)
     return SteadyArmBars(
         index=place[arms.first[:, None] + [axes - 2, axes - 1]],
-        span=arms.span(system.reference)[:, -2:],
-        length=arms.length,
+        span=span[:, -2:],
+        length=seen * (1 - arms.tension(span) / (arms.stiffness * whole)),
         stiffness=arms.stiffness,
     )
 

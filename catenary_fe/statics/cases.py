@@ -65,6 +65,7 @@ class CaseRows:
     allowed_offset_m : or None where the conditions allow any
     lowest_contact_wire_m, highest_contact_wire_m : between the sections' ends
     largest_dropper_force_N, slack_droppers : among all droppers
+    pushed_arms : numbers of the supports where a steady arm would have to push
     """
 
     name: str
@@ -76,13 +77,14 @@ class CaseRows:
     highest_contact_wire_m: float
     largest_dropper_force_N: float  # noqa: N815
     slack_droppers: int
+    pushed_arms: list[int]
     supports: list[CaseSupportRow]
 
     @property
     def holds(self) -> bool:
-        """Whether the contact wire stays within the allowed offset."""
+        """Whether the contact wire stays within the allowed offset, and no steady arm would have to push."""
         allowed = self.allowed_offset_m
-        return allowed is None or self.largest_lateral_offset_m <= allowed
+        return not self.pushed_arms and (allowed is None or self.largest_lateral_offset_m <= allowed)
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON; what does not apply is left out."""
@@ -115,8 +117,18 @@ def case_rows(settled: Shape) -> CaseRows:
         highest_contact_wire_m=float(heights.max()),
         largest_dropper_force_N=float(settled.dropper_forces.max(initial=0.0)),
         slack_droppers=int((settled.dropper_forces <= 0).sum()),
+        pushed_arms=pushed_arms(settled),
         supports=_supports(settled),
     )
+
+
+def pushed_arms(shape: Shape) -> list[int]:
+    """Numbers, from 1, of the supports where a steady arm that is a link would have to push."""
+    arms, reference = shape.system.arms, shape.system.reference
+    pushed = arms.first[arms.tension(arms.span(reference)) < 0]
+    before = shape.settlement.before.system.reference if shape.settlement else reference
+    at = shape.catenary.supports_at(before[pushed])
+    return sorted(set((at + 1).tolist()))
 
 
 def _wires(settled: Shape) -> list[WireRow]:

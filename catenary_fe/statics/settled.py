@@ -60,10 +60,10 @@ def _taken(
 
 
 def _at_rest(system: System, catenary: Catenary) -> tuple[System, Floats]:
-    """The line with its cantilevers where the messenger wire takes them, and displacements, shape (all,)."""
+    """The line with its cantilevers where the wires take them, and displacements, shape (all,)."""
     cantilevers = _cantilevers(system, catenary)
     swung, moved = system, np.zeros(system.dof.size)
-    before = np.zeros(len(cantilevers))
+    before = np.full(moved.size, np.inf)
     for _ in range(_PASSES):
         moved, left = solve_loaded(swung, np.zeros(moved.size), moved)
         if left is not None:
@@ -72,10 +72,10 @@ def _at_rest(system: System, catenary: Catenary) -> tuple[System, Floats]:
                 f"settle: no equilibrium under these conditions, {np.abs(left).max():.3g} N are left at the"
                 f" {system.name(worst)}; look there for loads and temperatures far from usual values"
             )
-        shifts = np.array([moved[c.along] for c in cantilevers])
-        if np.abs(shifts - before).max(initial=0.0) < _STILL:
+        carried = np.array([at for c in cantilevers for at in (c.along, *c.below)], dtype=np.int64)
+        if np.abs(moved - before)[carried].max(initial=0.0) < _STILL:
             return swung, moved
-        swung, before = _swung(system, cantilevers, shifts), shifts
+        swung, before = _swung(system, cantilevers, moved), moved
     raise SolverError("settle: the cantilevers come to no rest; look for arms that nothing pulls")
 
 
@@ -85,12 +85,14 @@ class _Cantilever:
 
     along, across : numbers of the messenger wire's coordinates on it; across is FIXED in the plane
     arms : numbers of the links whose pivots it carries
+    below : numbers of the contact wires' coordinates along the track, on these links
     mast : [m] to the left of the track's centre, or None
     """
 
     along: int
     across: int
     arms: tuple[int, ...]
+    below: tuple[int, ...]
     mast: float | None
 
 
@@ -101,22 +103,28 @@ def _cantilevers(system: System, catenary: Catenary) -> list[_Cantilever]:
     for wire in system.wires:
         if wire.kind != "messenger_wire":
             continue
-        below = [w for w in system.wires if w.contact and w.section == wire.section]
+        contact = [w for w in system.wires if w.contact and w.section == wire.section]
         for number, support in list(enumerate(sections[wire.section].supports))[1:-1]:
             along = width * (wire.first + int(wire.supports[number]))
-            points = [width * (w.first + int(w.supports[number])) for w in below]
-            arms = tuple(np.flatnonzero(np.isin(system.arms.first, points)).tolist())
+            points = [width * (w.first + int(w.supports[number])) for w in contact]
+            arms = np.flatnonzero(np.isin(system.arms.first, points))
+            below = tuple(system.arms.first[arms].tolist())
             across = along + 1 if system.spatial else FIXED
-            found.append(_Cantilever(along, across, arms, support.mast_position))
+            found.append(_Cantilever(along, across, tuple(arms.tolist()), below, support.mast_position))
     return found
 
 
-def _swung(system: System, cantilevers: Sequence[_Cantilever], shifts: Floats) -> System:
-    """The line with its cantilevers moved along the track by shifts [m], and drawn to their masts by that."""
+def _swung(system: System, cantilevers: Sequence[_Cantilever], moved: Floats) -> System:
+    """The line with its cantilevers moved along the track as far as their wires, and drawn to the masts.
+
+    A pivot goes as far as its own contact wire: the degree or two by which an arm leans along the track where
+    contact and messenger wire move differently are left out.
+    """
     pivot, force, reference = system.arms.pivot.copy(), system.force.copy(), system.reference.copy()
-    for cantilever, shift in zip(cantilevers, shifts.tolist(), strict=True):
-        for arm in cantilever.arms:
-            pivot[arm, 0] += shift
+    for cantilever in cantilevers:
+        shift = float(moved[cantilever.along])
+        for arm, along in zip(cantilever.arms, cantilever.below, strict=True):
+            pivot[arm, 0] += moved[along]
             if system.spatial:
                 pivot[arm, 1] += drawn(cantilever.mast, float(pivot[arm, 1]), shift)
         if cantilever.across == FIXED:

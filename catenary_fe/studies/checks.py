@@ -16,6 +16,7 @@ from catenary_fe.layout.rules import layout_warnings, pantograph_warnings
 from catenary_fe.layout.terminations import slowest_contact_wire
 from catenary_fe.results.signal import CUT_OFF
 from catenary_fe.statics import LineShape, Shape
+from catenary_fe.statics.cases import pushed_arms
 
 Floats = NDArray[np.float64]
 
@@ -105,6 +106,11 @@ def run_warnings(
                 f" {1e3 * limit:g} ‰ that EN 50119 (recalled) has for {3.6 * speed:.4g} km/h: spread the"
                 " change of height over more spans, or lower the speed"
             )
+    if pushed := pushed_arms(shape):
+        found.append(
+            f"{counted(len(pushed), 'support')}, the first one {pushed[0]}: the wind pushes the arm, and"
+            " arms only pull: here they are bars that push, too; give more stagger on that side, or less wind"
+        )
     longest = float(np.diff(shape.mesh.contact.x).max())
     wavelength = (wave_speed - speed) / CUT_OFF
     if 0 < wavelength < longest:  # beyond the wave speed nothing runs ahead

@@ -66,8 +66,8 @@ def _limits(ax: Axes, shapes: Sequence[Shape]) -> None:
     allowed = {offset for offset in of_cases if offset is not None}
     lines = []
     for offset in sorted(allowed):
-        label, look = f"allowed offset, {offset:g} m", {"color": style.SUPPORT, "linewidth": 1.4}
-        lines.append(ax.axhline(offset, linestyle=(0, (6, 3)), label=label, **look))
-        ax.axhline(-offset, linestyle=(0, (6, 3)), **look)
+        both = [ax.axhline(sign * offset, color=style.SUPPORT, linestyle="--") for sign in (1, -1)]
+        both[0].set_label(f"allowed offset, {offset:g} m")
+        lines.append(both[0])
     if lines:
         ax.legend(handles=lines, loc="upper left", fontsize=8, frameon=False)

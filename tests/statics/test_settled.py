@@ -211,6 +211,18 @@ def _held(case: object) -> tuple[float, float]:
     return tuple(sum(f[f"messenger_{way}"] + f[f"arms_{way}"] for f in each) for way in ("up", "left"))
 
 
+def test_arms_that_the_wind_pushes_are_named(stitched: cf.Shape, pantograph: cf.Pantograph) -> None:
+    """358 N of stagger pull against the wind's 65 m: arms whose wire is blown to their pivot push."""
+    T, q = stitched.catenary.contact_wire.tension, 0.5 * 1.25 * 0.0124
+    limit = np.sqrt(T * 4 * 0.2 / 65.0 / (q * 65.0))
+    for share, pushed in ((0.6, False), (1.3, True)):
+        settled = cf.settle(stitched, cf.Conditions(wind=cf.Wind(speed=share * limit)))
+        case = cf.case_rows(settled)
+        assert bool(case.pushed_arms) == (not case.holds) == pushed
+    with pytest.raises(cf.InputError, match=r"at support \d the wind pushes the steady arm"):
+        cf.simulate(settled, [pantograph], speed=60.0, method="linearised")
+
+
 def test_wind_needs_a_line_in_space() -> None:
     with pytest.raises(cf.InputError, match="set spatial = true in the layout"):
         cf.settle(cf.find_form(section("en50318_2002", 2)), cf.Conditions(wind=cf.Wind(speed=10.0)))
