@@ -82,6 +82,7 @@ BASES = {name: tomllib.loads(text) for name, text in
 WIRE = {
     "mass_per_length": 1.3, "tension": 13e3, "axial_stiffness": 9e6, "bending_stiffness": 150.0,
     "name": "another", "source": "elsewhere", "library": "BzII 120",
+    "diameter": 0.02, "thermal_expansion": 2e-5,
 }  # fmt: skip
 ARM = {
     "stiffness": 300.0, "mass": 0.8, "damping": 9.0, "length": 1.2, "mass_per_length": 1.0, "clamp_mass": 0.4,
@@ -91,7 +92,7 @@ SUPPORT = {
     "messenger_stiffness": 4e5, "messenger_damping": 20.0, "messenger_lateral_stiffness": 2e5,
     "messenger_lateral_damping": 20.0, "system_height": 1.3, "contact_wire_height": 5.495,
     "stagger": 0.1, "messenger_stagger": 0.05,
-    "stitch_wire": False, "stitch_wire_length": 12.0, "cant": 0.1,
+    "stitch_wire": False, "stitch_wire_length": 12.0, "cant": 0.1, "mast_position": 3.5,
 }  # fmt: skip
 DROPPER = {
     "position": 7.0, "length": 0.9, "stiffness": 2e5, "damping": 9.0, "mass_per_length": 0.2,
@@ -106,7 +107,7 @@ LAYOUT: dict[str, Any] = {
     "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
     "equipment.name": "an insulator", "equipment.source": "elsewhere",
     "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
-    "cant_base": 1.1, "span.curve_radius_end": 500.0,
+    "cant_base": 1.1, "installation_temperature": 5.0, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
     "midpoint": 2, "midpoint_position": 35.0, "tension_loss": 0.01,
 } | {
@@ -205,6 +206,9 @@ def computed(line: cf.Catenary) -> Iterator[Any]:
     weights = np.cos(np.arange(model.size))
     for matrix in (model.mass, model.damping, model.stiffness):
         yield float(weights @ (matrix @ weights))
+    wind = cf.Wind(speed=15.0) if line.is_spatial else None
+    settled = cf.settle(shape, cf.Conditions(temperature=40.0, wind=wind))
+    yield [(wire.x.round(6).tolist(), wire.y.round(6).tolist()) for wire in settled.wires]
 
 
 @pytest.fixture(scope="module")
@@ -237,7 +241,8 @@ ELSEWHERE = {
     "messenger_lateral_damping": "space", "messenger_stagger": "space", "length": "space",
     "mass_per_length": "space", "clamp_mass": "space", "inclination": "space", "side": "space",
     "holds_design_height": "many wires", "stitch_wire_length": "many wires", "cant": "space",
-    "cant_base": "space", "curve_radius_end": "space",
+    "cant_base": "space", "curve_radius_end": "space", "mast_position": "space",
+    "diameter": "space",
 }  # fmt: skip
 REFUSED = {
     "wear.span": "beside begin and end", "wear.contact_wire": "there is one",

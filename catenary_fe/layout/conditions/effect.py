@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PlainValidator
+from pydantic import Field, PlainValidator
 
 from catenary_fe.layout.parameters import LARGEST, shorten
 from catenary_fe.layout.parts import Wire
@@ -97,7 +97,8 @@ def _over_x(least: float, most: float) -> PlainValidator:
             found.append((x, _number(pair[1], least, most, f"entry {n}: value ")))
         return tuple(found)
 
-    return PlainValidator(check, json_schema_input_type=float | list[tuple[float, float]])
+    value = Annotated[float, Field(ge=least, le=most)]
+    return PlainValidator(check, json_schema_input_type=value | list[tuple[float, value]])
 
 
 def _number(value: Any, least: float, most: float, what: str) -> float:
