@@ -17,6 +17,8 @@ from catenary_fe.theory.beam import (
     steady_moving_force,
 )
 from catenary_fe.theory.forces import ElasticPantograph, HarmonicForce, MovingForce, linear_law
+from catenary_fe.theory.gust_response import spectrum_of_string_response, variance_of_string_response
+from catenary_fe.theory.gusts import GustField, Gusts, generate_gusts
 from catenary_fe.theory.infinite_string import (
     SlidingOscillator,
     deflection_under_moving_force,
@@ -60,6 +62,8 @@ from catenary_fe.theory.wires import (
 __all__ = [
     "Beam",
     "ElasticPantograph",
+    "GustField",
+    "Gusts",
     "HarmonicForce",
     "LinesResult",
     "MovingForce",
@@ -73,6 +77,7 @@ __all__ = [
     "doppler_factor",
     "elastic_pantograph_force",
     "force_at_rest",
+    "generate_gusts",
     "group_velocity",
     "influence_interval",
     "initial_value_series",
@@ -93,9 +98,11 @@ __all__ = [
     "scatter_at_obstacle",
     "sliding_oscillator",
     "solve_by_lines",
+    "spectrum_of_string_response",
     "static_deflection",
     "static_deflection_unbounded",
     "static_uniform_load",
     "steady_moving_force",
+    "variance_of_string_response",
     "wavenumber",
 ]
