@@ -1,13 +1,13 @@
-"""Closed forms and the method of lines for strings and tensioned beams; numpy and scipy alone.
+"""Closed forms and the method of lines for strings and tensioned beams, and gusts; numpy and scipy alone.
 
 Paper: "Selected problems of wave phenomena in catenaries", its equations by number, misprints corrected and
 named where they are. SI units, deflections positive upwards, x and t scalars or arrays that broadcast; an
 answer has their shape unless its line says otherwise.
 
-What follows from a wire alone is a property of its `String` or `Beam`; every other answer is a function whose
-first argument is that wire. A closed form of the string takes a `Beam` without stiffnesses too, and one
-for beams a `String`. All raise ValueError for a value out of its range, a number that is not finite, a
-position off the wire, and a wire with a stiffness that the closed form does not cover.
+What follows from a wire alone is a property of its `String` or `Beam`; every other answer about wires is a
+function whose first argument is that wire. A closed form of the string takes a `Beam` without stiffnesses
+too, and one for beams a `String`. All raise ValueError for a value out of its range, a number that is not
+finite, a position off the wire, and a wire with a stiffness that the closed form does not cover.
 """
 
 from catenary_fe.theory.beam import (

@@ -25,11 +25,11 @@ def spectrum_of_string_response(
     load_per_speed: float,
     modes: int = 50,
 ) -> FloatArray:
-    """[m²/Hz] one-sided spectrum of a wire's deflection in gusts, shape (*shape of f, *shape of x).
+    """[m²/Hz] one-sided spectrum of a wire's deflection in gusts, shape (shape of f, shape of x).
 
     ρ v̈ + c v̇ + EI v'''' − T v'' + k_f v = k u(x, t) on pinned ends, v = v'' = 0 at x = 0 and ℓ:
 
-    S_v(x, f) = k² S(f) Σ_n Σ_m H_n H_m* J_nm sin(k_n x) sin(k_m x), k_n = nπ/ℓ,
+    S_v(x, f) = k² S(f) Σ_n Σ_m H_n conj(H_m) J_nm sin(k_n x) sin(k_m x), k_n = nπ/ℓ,
     H_n = (2/ρℓ)/(ω_n² − ω² + iωc/ρ), ω = 2πf, ω_n of `natural_frequencies`,
     J_nm = ∫∫ sin(k_n x) sin(k_m x') exp(−a|x − x'|) dx dx', a = C f/U, both from 0 to ℓ
     = aℓ δ_nm/(a² + k_n²) + 2 k_n k_m [1 − (−1)ⁿ exp(−aℓ)]/((a² + k_n²)(a² + k_m²)) for n + m even, else 0.
