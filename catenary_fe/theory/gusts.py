@@ -47,8 +47,8 @@ class Gusts:
     mean_speed : [m/s] U, positive
     intensity : [-] I = σ/U, positive, at most 1
     length_scale : [m] L of the gusts along the wind, positive
-    decay : [-] C of the coherence along the line, not negative; 0: the same gust everywhere. Known roughly: 10
-        is a value recommended for design, measured ones are from 7 in unstable to 50 in stable air
+    decay : [-] C of the coherence along the line, not negative; 0: the same gust everywhere. Known roughly:
+        10 is a value recommended for design, measured ones are from 7 in unstable to 50 in stable air
 
     Raises ValueError for a value out of its range.
     """
