@@ -1,13 +1,13 @@
-"""Closed forms and the method of lines for strings and tensioned beams; numpy and scipy alone.
+"""Closed forms and the method of lines for strings and tensioned beams, and gusts; numpy and scipy alone.
 
 Paper: "Selected problems of wave phenomena in catenaries", its equations by number, misprints corrected and
 named where they are. SI units, deflections positive upwards, x and t scalars or arrays that broadcast; an
 answer has their shape unless its line says otherwise.
 
-What follows from a wire alone is a property of its `String` or `Beam`; every other answer is a function whose
-first argument is that wire. A closed form of the string takes a `Beam` without stiffnesses too, and one
-for beams a `String`. All raise ValueError for a value out of its range, a number that is not finite, a
-position off the wire, and a wire with a stiffness that the closed form does not cover.
+What follows from a wire alone is a property of its `String` or `Beam`; every other answer about wires is a
+function whose first argument is that wire. A closed form of the string takes a `Beam` without stiffnesses
+too, and one for beams a `String`. All raise ValueError for a value out of its range, a number that is not
+finite, a position off the wire, and a wire with a stiffness that the closed form does not cover.
 """
 
 from catenary_fe.theory.beam import (
@@ -17,6 +17,8 @@ from catenary_fe.theory.beam import (
     steady_moving_force,
 )
 from catenary_fe.theory.forces import ElasticPantograph, HarmonicForce, MovingForce, linear_law
+from catenary_fe.theory.gust_response import spectrum_of_string_response, variance_of_string_response
+from catenary_fe.theory.gusts import GustField, Gusts, generate_gusts
 from catenary_fe.theory.infinite_string import (
     SlidingOscillator,
     deflection_under_moving_force,
@@ -60,6 +62,8 @@ from catenary_fe.theory.wires import (
 __all__ = [
     "Beam",
     "ElasticPantograph",
+    "GustField",
+    "Gusts",
     "HarmonicForce",
     "LinesResult",
     "MovingForce",
@@ -73,6 +77,7 @@ __all__ = [
     "doppler_factor",
     "elastic_pantograph_force",
     "force_at_rest",
+    "generate_gusts",
     "group_velocity",
     "influence_interval",
     "initial_value_series",
@@ -93,9 +98,11 @@ __all__ = [
     "scatter_at_obstacle",
     "sliding_oscillator",
     "solve_by_lines",
+    "spectrum_of_string_response",
     "static_deflection",
     "static_deflection_unbounded",
     "static_uniform_load",
     "steady_moving_force",
+    "variance_of_string_response",
     "wavenumber",
 ]
