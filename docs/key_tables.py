@@ -95,7 +95,7 @@ def _allowed(part: dict[str, Any]) -> Iterator[str]:
         of = part.get("items", {})
         inner = "tables" if _references(of) else "lists" if of.get("type") == "array" else "whole numbers"
         yield f"list of {inner}"
-    elif "$ref" in part:
+    elif "$ref" in part or part.get("type") == "object":
         yield "table"
     elif part.get("type") in ("string", "boolean"):
         yield {"string": "text", "boolean": "true or false"}[part["type"]]

@@ -11,6 +11,16 @@ from catenary_fe.engines.compiled import compiled
 
 
 @compiled
+def add_loads(rows: CsrRows, signals: Floats, x: Floats) -> None:
+    """Loads that vary in time, at one time; signals of shape (loads,)."""
+    start, column, value = rows
+    if signals.size > 0:
+        for i in range(x.size):
+            for m in range(start[i], start[i + 1]):
+                x[i] += value[m] * signals[column[m]]
+
+
+@compiled
 def take_one(A: PackedRows, u: Floats, x: Floats) -> None:
     """x -= A u"""
     start, index, value, _ = A

@@ -56,12 +56,22 @@ class Rows:
         found[..., self.place] = values
         return found
 
-    def matrix(self, matrix: Any, idle: float = 0.0) -> Any:
-        """A matrix over the coordinates, sparse, with this on the diagonal of idle ones."""
-        from scipy.sparse import csr_matrix, diags
+    def rows_of(self, matrix: Any) -> Any:
+        """A sparse matrix with rows of the coordinates, with empty ones for idle coordinates."""
+        return self._selection @ matrix
+
+    @property
+    def _selection(self) -> Any:
+        from scipy.sparse import csr_matrix
 
         entries = np.ones(self.place.size), (self.place, np.arange(self.place.size))
-        T = csr_matrix(entries, shape=(self.size, self.place.size))
+        return csr_matrix(entries, shape=(self.size, self.place.size))
+
+    def matrix(self, matrix: Any, idle: float = 0.0) -> Any:
+        """A matrix over the coordinates, sparse, with this on the diagonal of idle ones."""
+        from scipy.sparse import diags
+
+        T = self._selection
         diagonal = np.full(self.size, idle)
         diagonal[self.place] = 0.0
         return (T @ matrix @ T.T + diags(diagonal)).tocsr()

@@ -90,7 +90,7 @@ class LinearModel:
     stretch : elements whose inclination lengthens a gap
     gaps : where these tensions are
     imbalance : [N], shape (size,), what the line is out of balance where it was installed
-    patterns : [N], shape (loads, size), of loads that vary in time
+    patterns : [N], sparse, shape (size, loads), of loads that vary in time
     section_starts : shape (sections + 1,), where the coordinates of each tension section begin
     vertical : numbers of all heights and vertical slopes: among all coordinates of the line, and among these
     spatial : whether it has coordinates across the track
@@ -110,7 +110,7 @@ class LinearModel:
     links: SteadyArmBars
     stretch: StretchCoupling
     imbalance: Floats
-    patterns: Floats
+    patterns: Any
     section_starts: Integers
     vertical: tuple[Integers, Integers]
     spatial: bool
@@ -160,7 +160,7 @@ def linear_model(system: System) -> LinearModel:
         links=_swinging_links(system, place),
         stretch=_stretch_coupling(system, wires, place),
         imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
-        patterns=np.reshape([T[:whole].T @ load.pattern for load in system.time_loads], (-1, T.shape[1])),
+        patterns=(T[:whole].T @ system.time_patterns).tocsr(),
         section_starts=starts,
         vertical=(vertical, place[vertical]),
         spatial=system.spatial,

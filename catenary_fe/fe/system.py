@@ -10,7 +10,7 @@ and the ends of stitch wires share the messenger wire's coordinates.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -261,11 +261,23 @@ class System:
         forces: Floats = scattered([(self.elements(), blocks)], self.dof.size) @ points.astype(float)
         return forces
 
-    def load(self, times: Floats) -> tuple[Floats, Floats]:
-        """Loads that vary in time: patterns [N], shape (loads, free), and signals, shape (loads, times)."""
-        patterns = [self.gather(load.pattern) for load in self.time_loads]
-        signals = [np.asarray(load.signal(times), dtype=float) for load in self.time_loads]
-        return np.reshape(patterns, (-1, self.size)), np.reshape(signals, (-1, times.size))
+    @cached_property
+    def patterns(self) -> Any:
+        """[N], sparse, shape (free, loads), of the loads that vary in time."""
+        return (self.transformation.T @ self.time_patterns).tocsr()
+
+    @cached_property
+    def time_patterns(self) -> Any:
+        """[N], sparse, shape (all, loads), of the loads that vary in time."""
+        from scipy.sparse import csr_matrix, vstack
+
+        rows = [csr_matrix(load.pattern) for load in self.time_loads]
+        return vstack([csr_matrix((0, self.dof.size)), *rows]).T.tocsr()
+
+    def signals(self, times: Floats) -> Floats:
+        """Shape (loads, times), of the loads that vary in time, at times [s]."""
+        found = [np.asarray(load.signal(times), dtype=float) for load in self.time_loads]
+        return np.reshape(found, (-1, times.size))
 
     def varying(self, time: float) -> Floats:
         """[N], shape (all,): sum of the loads that vary in time, at a time [s]."""
@@ -280,12 +292,13 @@ class System:
         moved, rates : [m], [m/s], shape (all,), displacements and velocities
         time : [s]
         """
-        patterns, signals = self.load(np.array([time]))
+        varying = self.patterns @ self.signals(np.array([time]))[:, 0]
         total, droppers = self.reference + moved, self.droppers
         drag = self.damping() @ rates
         at, pull = droppers.index(), droppers.damper_forces(total, rates)
         drag -= np.bincount(at.ravel(), pull.ravel(), minlength=drag.size)
-        return self.gather(self.out_of_balance(moved) - drag) + signals[:, 0] @ patterns
+        found: Floats = self.gather(self.out_of_balance(moved) - drag) + varying
+        return found
 
     def tensions(self, moved: Floats) -> list[Floats]:
         """[N], for each wire shape (nodes - 1,): tension of its elements, mean of each."""
@@ -348,46 +361,6 @@ class System:
         """Stiffness of all but the wires at rest, droppers taut, over all coordinates, sparse."""
         return scattered(self._spring_parts(self.reference, True), self.dof.size) + self.linear_stiffness
 
-    def between(self, x: Floats, begin: float, end: float) -> System:
-        """The same coordinates with the elements, droppers and arms of a part of the line alone.
-
-        x : [m], shape (all,), stations of the coordinates
-        begin, end : [m]
-        """
-        inside = (x >= begin) & (x <= end)
-        kept = inside[self.first] & inside[self._last]
-        return replace(
-            self.only(kept),
-            droppers=self.droppers.only(inside[self.droppers.first]),
-            arms=self.arms.only(inside[self.arms.first]),
-        )
-
-    def part(self, section: int) -> System:
-        """The same coordinates with the elements, springs and constant forces of a tension section alone."""
-        from scipy.sparse import diags
-
-        mine = self.section == section
-        own = diags(mine.astype(float))
-        return replace(
-            self.only(mine[self.first]),
-            droppers=self.droppers.only(mine[self.droppers.first]),
-            arms=self.arms.only(mine[self.arms.first]),
-            ground_stiffness=self.ground_stiffness * mine,
-            linear_stiffness=(own @ self.linear_stiffness @ own).tocsr(),
-            force=self.force * mine,
-        )
-
-    def across(self, x: Floats, cut: float) -> System:
-        """The same coordinates with the elements alone that begin before a cut [m] and end behind it."""
-        none = np.zeros(x.size, dtype=bool)
-        return replace(
-            self.only((x[self.first] <= cut) & (x[self._last] > cut)),
-            droppers=self.droppers.only(none[self.droppers.first]),
-            arms=self.arms.only(none[self.arms.first]),
-            ground_stiffness=np.zeros(x.size),
-            linear_stiffness=0 * self.linear_stiffness,
-        )
-
     def holds(self, wire: int) -> Floats:
         """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track.
 
@@ -401,22 +374,6 @@ class System:
                 springs.append(other.x[self.ground_stiffness[along] > 0])
         held = np.concatenate(fixed)
         return held if held.size else np.concatenate(springs)
-
-    @property
-    def _last(self) -> Integers:
-        """Shape (elements,): the last coordinate of each element."""
-        return self.first + 4 * self.axes - 1
-
-    def only(self, kept: NDArray[np.bool_]) -> System:
-        """The same coordinates with some of the elements, shape (elements,)."""
-        cables = Cables(*(values[kept] for values in vars(self.cables).values()))
-        return replace(
-            self,
-            first=self.first[kept],
-            cables=cables,
-            mass_per_length=self.mass_per_length[kept],
-            element_mass=self.element_mass[kept],
-        )
 
     def free(self, matrix: Any) -> Any:
         """A matrix over all coordinates as one over the free ones."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.spring import FIXED
 from catenary_fe.fe.system import System, WireNodes
 from catenary_fe.layout import Catenary, InputError, Line
+from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.terminations import WireField
 from catenary_fe.statics.line import LineShape
 from catenary_fe.statics.shape import HangingWire, Shape
@@ -97,6 +98,7 @@ class CaseRows:
         }
 
 
+@checked
 def case_rows(settled: Shape) -> CaseRows:
     """The figures of a line under conditions. Raises InputError for a shape that was not settled."""
     settlement = settled.settlement

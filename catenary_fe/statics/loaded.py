@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import Cables, inner_forces, tangent_blocks
+from catenary_fe.fe.cuts import elements_across, only, part_between
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
@@ -130,7 +131,7 @@ class _Surroundings:
                 stiffness = stiffness - _loose(system, x, cut + 1e-6, n == 0).tangent(rest)
         self._stiffness = stiffness[self.part, self.part]
         self._factor = splu(self._stiffness.tocsc(), **_NARROW)
-        self._take(system.between(x, near[0] - 1e-6, near[1] + 1e-6))
+        self._take(part_between(system, x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
         self._blocks, self._inner = tangent_blocks(self._cables, rest), inner_forces(self._cables, rest)
         self._at_rest = [
@@ -258,12 +259,12 @@ def _loose(system: System, x: Floats, cut: float, left: bool) -> System:
     x : [m], shape (all,), stations of the coordinates
     left : beyond it is on its left, else on its right
     """
-    across = system.across(x, cut)
+    across = elements_across(system, x, cut)
     firsts = [wire.first for wire in system.wires]
     owner = np.searchsorted(firsts, across.first // (2 * system.axes), side="right") - 1
     holds = [system.holds(int(n)) for n in owner]
     held = [bool(((at <= cut) if left else (at > cut)).any()) for at in holds]
-    return across.only(~np.array(held, dtype=bool))
+    return only(across, ~np.array(held, dtype=bool))
 
 
 def _summed(values: Floats, index: Integers, size: int) -> Floats:

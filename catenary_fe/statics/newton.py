@@ -124,8 +124,7 @@ class _StaticContact:
         from scipy.sparse import csr_matrix, lil_matrix
 
         self.system, self.pantographs = system, pantographs
-        patterns, signals = system.load(np.zeros(1))
-        self.varying: Floats = signals[:, 0] @ patterns  # as a run begins
+        self.varying: Floats = system.patterns @ system.signals(np.zeros(1))[:, 0]  # as a run begins
         self.contacts = contacts_of(pantographs, len(system.contact_paths))
         bodies = [p.body for p in pantographs]
         self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])

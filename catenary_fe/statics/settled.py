@@ -14,6 +14,7 @@ from catenary_fe.fe.system import System, WireNodes
 from catenary_fe.layout import Catenary, InputError, Line, SolverError
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.conditions import Conditions, Effect
+from catenary_fe.layout.parameters import shorten
 from catenary_fe.statics.newton import solve_loaded
 from catenary_fe.statics.shape import HangingWire, Settlement, Shape
 
@@ -50,6 +51,10 @@ def _taken(
 ) -> tuple[Conditions | None, list[Effect]]:
     if isinstance(conditions, Conditions):
         return conditions, conditions.effects(installed)
+    if not isinstance(conditions, (list, tuple)):
+        raise InputError(
+            f"settle: conditions = {shorten(conditions)}: give cf.Conditions(...), or a list of effects"
+        )
     for effect in conditions:
         if not isinstance(effect, Effect):
             raise InputError(

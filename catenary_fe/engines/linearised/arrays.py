@@ -66,7 +66,7 @@ class Line(NamedTuple):
     dropper_compliance : likewise for the droppers
     links, stretch : steady arms, inclined elements
     load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.reduction.LinearModel`
-    patterns : [N], shape (loads, size), of loads that vary in time
+    patterns : [N], rows of coordinates, of loads that vary in time
     supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
     """
 
@@ -87,7 +87,7 @@ class Line(NamedTuple):
     links: SteadyArmBars
     stretch: StretchCoupling
     load: Floats
-    patterns: Floats
+    patterns: CsrRows
     supports: Integers
     heights: Integers
     tensions: Integers

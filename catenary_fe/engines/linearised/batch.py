@@ -24,6 +24,7 @@ from catenary_fe.engines.contact_solver import advance_heads
 from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.history import History
 from catenary_fe.engines.kernels import (
+    add_loads,
     lower_eight,
     lower_one,
     take_eight,
@@ -67,7 +68,7 @@ class Batch:
         self._start: InitialState | None = None
         self._computed = Computed(setup.model.section_starts.size - 1)
         self._operator = setup.for_one_slot if slots == 1 else setup.for_eight_slots
-        self.signals = np.zeros((len(setup.line.patterns), sizes.steps + 2)) if signals is None else signals
+        self.signals = np.zeros((0, sizes.steps + 2)) if signals is None else signals
         self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
         self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal, setup.base_line)
         width = 2 * line.contact_compliance.value.shape[1]
@@ -200,8 +201,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
         for _ in range(steps):
             predict(scheme, operator.beta, flat)
             flat.x[:] = line.load
-            for k in range(line.patterns.shape[0]):
-                flat.x[:] += signals[k, pantographs.step[0] + 1] * line.patterns[k]
+            add_loads(line.patterns, signals[:, pantographs.step[0] + 1], flat.x)
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
             couple_stretch_one(line, flat.q, work.tension[0], flat.x)
@@ -228,9 +228,8 @@ def _loops(sources: str) -> tuple[Any, Any]:
             predict(scheme, operator.beta, flat)
             for i in range(line.load.size):
                 wires.x[i, :] = line.load[i]
-            for k in range(line.patterns.shape[0]):
-                for c in range(SLOTS):
-                    wires.x[:, c] += signals[k, pantographs.step[c] + 1] * line.patterns[k]
+            for c in range(SLOTS):
+                add_loads(line.patterns, signals[:, pantographs.step[c] + 1], wires.x[:, c])
             take_eight(operator.stiffness, wires.w, wires.x)
             take_eight(operator.rest, wires.v, wires.x)
             couple_stretch_eight(line, wires.q, work.tension, wires.x)

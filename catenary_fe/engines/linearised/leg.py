@@ -97,7 +97,7 @@ def _line(line: Line, at: Slices[slice]) -> Line:
             moved(stretch.at[mine], first, end), stretch.length[mine], stretch.gap[mine] - at.gaps.start
         ),
         load=line.load[at.rows],
-        patterns=np.ascontiguousarray(line.patterns[:, at.rows]),
+        patterns=csr_part(line.patterns, at.rows, 0),
         supports=moved(line.supports, first, end),
         heights=moved(line.heights, first, end),
         tensions=line.tensions[at.gaps] - first,

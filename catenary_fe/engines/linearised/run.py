@@ -98,7 +98,7 @@ class LinearisedEngine:
             return
         sizes = self._sizes(jobs)
         times = self._time.step * np.arange(sizes.steps + 2, dtype=float)
-        _, signals = self._system.load(times)
+        signals = self._system.signals(times)
         slots = most_slots(self.setup, sizes, len(jobs))
         batch = Batch(self.setup, sizes, slots, self._every, signals)
         active: dict[int, _Job] = {}

@@ -70,7 +70,7 @@ class Setup:
 
     def load_at(self, signals: Floats) -> Floats:
         """[N], shape (size,): with the loads that vary in time at signals of shape (loads,)."""
-        load: Floats = self.line.load + signals @ self.line.patterns
+        load: Floats = self.line.load + self.model.patterns @ signals
         return load
 
     @property
@@ -120,7 +120,7 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
             links=parts_of(system.section[system.arms.first], starts.size - 1),
             gaps=parts_of(of_gaps, starts.size - 1),
         ),
-        relays=starts.size > 2 and not len(model.patterns) and _widest(line) <= np.diff(starts).min(),
+        relays=starts.size > 2 and not model.patterns.shape[1] and _widest(line) <= np.diff(starts).min(),
     )
 
 
@@ -154,7 +154,7 @@ def _filled_up(model: LinearModel) -> LinearModel:
         stiffness=rows.matrix(model.stiffness, 1.0),
         damping=rows.matrix(model.damping),
         imbalance=rows.spread(model.imbalance),
-        patterns=rows.spread(model.patterns),
+        patterns=rows.rows_of(model.patterns),
         dropper_rows=csr_matrix((own.data, rows.place[own.indices], own.indptr), (own.shape[0], rows.size)),
         contacts=tuple(
             replace(path, dof=rows.number(path.dof), across_dof=rows.number(path.across_dof))
@@ -196,7 +196,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         links=_links(model, factor),
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
-        patterns=model.patterns,
+        patterns=csr_rows(model.patterns),
         supports=np.concatenate([wire.dof[wire.supports, 0] for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from catenary_fe.engines.arrays import Floats, Integers, PackedRows
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows
 from catenary_fe.engines.nonlinear.cables import Elements
 
 
@@ -29,7 +29,7 @@ class Equations(NamedTuple):
 
     reference, dof : shape (all,)
     force : shape (free,)
-    patterns : [N], shape (loads, free), of loads that vary in time
+    patterns : [N], rows of the free coordinates, of loads that vary in time
     stiffness, mass, damping : over the free coordinates, the stiffness of linear springs
     """
 
@@ -39,7 +39,7 @@ class Equations(NamedTuple):
     droppers: SpringArrays
     links: SpringArrays
     force: Floats
-    patterns: Floats
+    patterns: CsrRows
     stiffness: PackedRows
     mass: PackedRows
     damping: PackedRows

@@ -21,7 +21,7 @@ from catenary_fe.engines.nonlinear.arrays import (
 from catenary_fe.engines.nonlinear.cables import Elements
 from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
-from catenary_fe.engines.sections import moved, packed_part
+from catenary_fe.engines.sections import csr_part, moved, packed_part
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -149,7 +149,7 @@ def _equations(
         droppers=_springs(whole.droppers, droppers, place),
         links=_springs(whole.links, links, place),
         force=whole.force[rows],
-        patterns=np.ascontiguousarray(whole.patterns[:, rows]),
+        patterns=csr_part(whole.patterns, rows, 0),
         stiffness=packed_part(whole.stiffness, first, end),
         mass=packed_part(whole.mass, first, end),
         damping=packed_part(whole.damping, first, end),

@@ -245,7 +245,7 @@ class NonlinearRun:
         own = leg.arrays(state, self.records)
         begin = int(state.pantographs.step[0])
         times = self._step * (begin + np.arange(steps * parts + 1) / parts)
-        _, signals = self._parameters.system.load(times)
+        signals = self._parameters.system.signals(times)
         done, iterations = advance(
             scheme, leg.equations, leg.stations, leg.factor(factor), own.wires, own.flat,
             own.motion, own.slack, state.heads, state.pantographs, state.work, own.records, own.energy,

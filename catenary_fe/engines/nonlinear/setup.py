@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.factor import factorise, packed_rows
+from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays, Stations
 from catenary_fe.engines.nonlinear.cables import Elements
 from catenary_fe.engines.sections import Rows, parts_of
+from catenary_fe.fe.cuts import section_part
 from catenary_fe.fe.spring import Springs
 from catenary_fe.fe.system import System
 
@@ -36,7 +37,7 @@ class Parameters:
     def sections(self) -> list[System]:
         """The line's tension sections, over the same coordinates."""
         count = self.rows.starts.size - 1
-        return [self.system.part(n) for n in range(count)] if count > 1 else [self.system]
+        return [section_part(self.system, n) for n in range(count)] if count > 1 else [self.system]
 
     @cached_property
     def parts(self) -> tuple[Integers, Integers, Integers]:
@@ -62,7 +63,7 @@ class Parameters:
             ),
             droppers=_arrays(line.droppers),
             links=_arrays(line.arms),
-            patterns=rows.spread(line.load(np.zeros(1))[0]),
+            patterns=csr_rows(rows.rows_of(line.patterns)),
             stiffness=packed_rows(rows.matrix(line.free(self._linear_stiffness))),
             force=rows.spread(line.gather(line.force)),
             mass=packed_rows(rows.matrix(self.mass, 1.0)),

@@ -25,7 +25,7 @@ from catenary_fe.engines.contact_solver import (
     weigh_contact,
 )
 from catenary_fe.engines.generalized_alpha import Scheme, predict
-from catenary_fe.engines.kernels import take_one
+from catenary_fe.engines.kernels import add_loads, take_one
 from catenary_fe.engines.nonlinear import arrays, cables, forces
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
 from catenary_fe.engines.nonlinear.cables import take_cables
@@ -102,8 +102,7 @@ def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -
     take_cables(axes, system.elements, motion.total, motion.inner)
     take_links(system.links, motion.total, motion.inner)
     residual[:] = system.force
-    for k in range(system.patterns.shape[0]):
-        residual += signals[k] * system.patterns[k]
+    add_loads(system.patterns, signals, residual)
     for i in range(system.dof.size):
         if system.dof[i] >= 0:
             residual[system.dof[i]] += motion.inner[i]
@@ -347,9 +346,10 @@ def _loop(sources: str) -> Any:
             if not converged:
                 return False, iterations
             _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy, scheme.h * (n + 1))
-            for k in range(system.patterns.shape[0]):
-                mean = (signals[k, n - begin] + signals[k, n + 1 - begin]) / 2
-                energy.work[0] += mean * (system.patterns[k] * motion.before).sum()
+            if signals.shape[0] > 0:
+                residual[:] = 0.0
+                add_loads(system.patterns, (signals[:, n - begin] + signals[:, n + 1 - begin]) / 2, residual)
+                energy.work[0] += (residual * motion.before).sum()
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, pantographs, work, records)
                 pantographs.step[0] = step

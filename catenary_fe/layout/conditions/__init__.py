@@ -9,12 +9,30 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.conditions.effect import Effect, TemperatureOverX, WirePart, over_x
+from catenary_fe.layout.conditions.gusts import GustLoads
 from catenary_fe.layout.conditions.ice import Ice, IceMass
 from catenary_fe.layout.conditions.temperature import Warming
-from catenary_fe.layout.conditions.wind import Drag, Wind
+from catenary_fe.layout.conditions.wind import Drag, Gusts, Wind
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import Parameters, Positive, Text, problem_lines
 from catenary_fe.layout.toml import read_toml
+
+
+class Case(Parameters):
+    """Further circumstances: the file's with these changes."""
+
+    name: Text
+    """what tables and pictures call it"""
+    source: Text = ""
+    """where the numbers come from, and how sure they are"""
+    temperature: TemperatureOverX | None = None
+    """[°C] of the wires, or a table over x"""
+    wind: dict[str, Any] = Field(default_factory=dict)
+    """keys of `wind` that differ"""
+    ice: dict[str, Any] = Field(default_factory=dict)
+    """keys of `ice` that differ"""
+    allowed_offset: Positive | None = None
+    """[m] of the contact wire from the track's centre"""
 
 
 class Conditions(Parameters):
@@ -35,17 +53,13 @@ class Conditions(Parameters):
     """on the wires; unset: none"""
     allowed_offset: Positive | None = None
     """[m] of the contact wire from the track's centre, which `cases` judges; unset: any"""
-    case: tuple[dict[str, Any], ...] = Field(default=(), json_schema_extra={"items": {"type": "object"}})
-    """for the command `cases`: further circumstances, each with a name of its own, that change these"""
+    case: tuple[Case, ...] = ()
+    """for the command `cases`: further circumstances, each with a name of its own"""
 
     @model_validator(mode="after")
     def _cases_are_sound(self) -> Self:
         names = [self.name]
         for number, change in enumerate(self.case, start=1):
-            if "name" not in change:
-                raise ValueError(f"case {number}: name is missing; add it: what tables and pictures call it")
-            if "case" in change:
-                raise ValueError(f"case {number}: a case has no cases of its own")
             try:
                 names.append(self._changed(change).name)
             except InputError as error:
@@ -54,8 +68,9 @@ class Conditions(Parameters):
             raise ValueError(f"case: the name {twice[0]!r} stands for two cases; give each its own")
         return self
 
-    def _changed(self, change: dict[str, Any]) -> Conditions:
-        return Conditions(**_merged(self.model_dump(exclude={"case"}, exclude_unset=True), change))
+    def _changed(self, change: Case) -> Conditions:
+        own = change.model_dump(exclude_unset=True)
+        return Conditions(**_merged(self.model_dump(exclude={"case"}, exclude_unset=True), own))
 
     @property
     def cases(self) -> list[Conditions]:
@@ -74,6 +89,8 @@ class Conditions(Parameters):
             found.append(IceMass(self.ice))
         if self.wind:
             found.append(Drag(self.wind, self.ice))
+            if self.wind.gusts and self.wind.blows:
+                found.append(GustLoads(self.wind, self.ice))
         return found
 
 
@@ -104,6 +121,7 @@ def conditions_schema() -> dict[str, Any]:
 __all__ = [
     "Conditions",
     "Effect",
+    "Gusts",
     "Ice",
     "Wind",
     "WirePart",

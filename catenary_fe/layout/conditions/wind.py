@@ -10,7 +10,23 @@ from pydantic import Field
 
 from catenary_fe.layout.conditions.effect import Effect, Floats, SpeedOverX, WirePart, over_x
 from catenary_fe.layout.conditions.ice import Ice, iced_diameter
-from catenary_fe.layout.parameters import Parameters, Positive
+from catenary_fe.layout.parameters import NonNegative, Parameters, Positive
+
+
+class Gusts(Parameters):
+    """Gusts in time and along the line: von Kármán's spectrum, Davenport's coherence (`theory.Gusts`)."""
+
+    intensity: Annotated[float, Field(strict=True, gt=0, le=1)]
+    """[1] standard deviation over the mean speed; 0.16 in open country"""
+    length_scale: Positive
+    """[m] of the gusts along the wind; 80 near the ground"""
+    decay: NonNegative = 10.0
+    """[1] of the coherence along the line: 10 is a value for design, measured ones are from 7 to 50"""
+    seed: Annotated[int, Field(strict=True, ge=0)] = 1
+    """of the random numbers: the same seed, the same gusts"""
+    duration: Annotated[float, Field(strict=True, gt=0, le=3600)] = 120.0
+    """[s] of the history; a run that lasts longer is refused"""
+
 
 Direction = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-360, le=360)]
 
@@ -32,10 +48,23 @@ class Wind(Parameters):
     """[1] of a wire"""
     span_factor: Annotated[float, Field(strict=True, gt=0, le=1)] = 1.0
     """[1] of the load, where the speed is that of gusts shorter than a span; 0.75 on tensioned wires"""
+    gusts: Gusts | None = None
+    """in runs, which then begin with the wires at rest in the first gust; unset: steady wind"""
+
+    @property
+    def across_share(self) -> float:
+        """[1] of the speed that blows to the left."""
+        return float(np.sin(np.radians(self.direction)))
+
+    @property
+    def blows(self) -> bool:
+        """Whether it does anything to the wires."""
+        values = [v for _, v in self.speed] if isinstance(self.speed, tuple) else [self.speed]
+        return bool(max(values) > 0 and abs(self.across_share) > 1e-9)
 
     def across(self, x: Floats) -> Floats:
         """[m/s], shape of x: to the left."""
-        return over_x(self.speed, x) * float(np.sin(np.radians(self.direction)))
+        return over_x(self.speed, x) * self.across_share
 
     def resistance(self, part: WirePart, ice: Ice | None) -> Floats:
         """[N s²/m³], shape (places,): drag a metre over the speed's square."""
