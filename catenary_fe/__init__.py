@@ -61,6 +61,13 @@ if TYPE_CHECKING:
         load_run,
         save_catenary,
     )
+    from catenary_fe.results.line_test import (
+        LineTest,
+        LineTestComparison,
+        MeasuredPass,
+        compare_with_line_test,
+        read_line_test,
+    )
     from catenary_fe.statics import Shape, against_design, find_form, find_heights, fit_measured
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import modal_run, simulate, solve_modes
@@ -87,6 +94,13 @@ _ROOMS = {
         "criteria_rows",
         "load_run",
         "save_catenary",
+    ),
+    "results.line_test": (
+        "LineTest",
+        "LineTestComparison",
+        "MeasuredPass",
+        "compare_with_line_test",
+        "read_line_test",
     ),
     "studies.simulate": ("simulate",),
     "layout": (
@@ -141,6 +155,9 @@ __all__ = [
     "ForceStatistics",
     "InputError",
     "Line",
+    "LineTest",
+    "LineTestComparison",
+    "MeasuredPass",
     "MeasuredWire",
     "MeshSettings",
     "ModalRun",
@@ -170,6 +187,7 @@ __all__ = [
     "against_design",
     "build_line",
     "catenary_from_tables",
+    "compare_with_line_test",
     "criteria_rows",
     "elasticity",
     "even_nodes",
@@ -185,6 +203,7 @@ __all__ = [
     "load_pantograph",
     "load_run",
     "modal_run",
+    "read_line_test",
     "read_measured",
     "run_wire",
     "save_catenary",
