@@ -15,7 +15,7 @@ from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import Answer, print_table, say, working
 from catenary_fe.cli.verdicts import exit_code, kept_evaluation
 from catenary_fe.layout import InputError
-from catenary_fe.layout.arguments import number
+from catenary_fe.layout.arguments import number, whole
 from catenary_fe.results.signal import FilterKind
 
 _OF_TESTS = "of a line test, and no table of measurements is given"
@@ -106,6 +106,8 @@ def compare_line_test(
     speed = test.speed_kmh
     if speed is not None:
         number("--measured-speed-kmh", speed, "km/h", above=0.0)
+    if test.pantograph is not None:
+        whole("--pantograph", test.pantograph, least=1, most=run.data.sizes["pantograph"])
     measured = read_line_test(files, columns=columns, support=test.support)
     compared = compare_with_line_test(
         run,

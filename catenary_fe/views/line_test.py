@@ -91,7 +91,7 @@ def _along(ax: Axes, c: LineTestComparison, name: str, label: str, title: str) -
 
 def _about_mean(height: Floats, inside: NDArray[np.bool_]) -> Floats:
     """[mm]: heights may be measured above any level."""
-    return 1e3 * (height - height[inside].mean())
+    return 1e3 * (height - float(height[inside].mean()))
 
 
 def _force(ax: Axes, c: LineTestComparison) -> None:

@@ -85,4 +85,6 @@ def _check(shift: float | None, speed: float | None, is_filtered: bool, has_hist
     if speed is not None:
         number("speed", speed, "m/s", above=0.0, most=200.0, remedy="it is in m/s")
     if not has_history and (shift is not None or speed is not None or is_filtered):
-        raise InputError("shift, speed and is_filtered are of a force or a height, which was not measured")
+        raise InputError(
+            "shift, speed and filter of a measurement are those of a force or a height, which it has not"
+        )

@@ -57,12 +57,11 @@ class RunSide:
         begin = max(self.first, *(float(e[0]) for e in ends))
         end = min(self.last, *(float(e[1]) for e in ends))
         if end - begin < float(np.diff(self.supports).min()):
-            listed = "; ".join(
-                f"{one.name} from {a:.1f} to {b:.1f} m" for one, (a, b) in zip(even, ends, strict=True)
-            )
+            each = (f"{one.name} {a:.1f} to {b:.1f} m" for one, (a, b) in zip(even, ends, strict=True))
             raise InputError(
-                f"less than a span to compare: the run is evaluated from {self.first:g} to {self.last:g} m,"
-                f" {listed} of the line; look at the shift, or evaluate other spans"
+                f"less than a span to compare: the run is evaluated from {self.first:g} to {self.last:g} m of"
+                f" the line, and with its shift there is: {', '.join(each)}; look at the shift, or evaluate"
+                " other spans"
             )
         for one, place in zip(even, places, strict=True):
             one.check_gaps(begin, end, place.shift)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +68,14 @@ class EvenPass:
                 f"{self.name}: {gap[i]:.3g} s without a row at {at[i] + shift:.1f} m of the line{more}: at"
                 f" most {LONGEST_GAP:g} s; compare other spans, or split the measurement there"
             )
+
+    def without_gaps(self, x: Floats) -> NDArray[np.bool_]:
+        """Shape of ``x`` [m], along the way, not shifted: where rows are close, and were shortly before."""
+        at, gap = self.gaps
+        counts = np.ones(x.size, dtype=bool)
+        for i in np.flatnonzero(gap > LONGEST_GAP * (1 + 1e-6)):
+            counts &= (x < at[i]) | (x > at[i] + (gap[i] + BEFORE) * float(self.speed.mean()))
+        return counts
 
 
 def even_pass(
@@ -167,29 +174,31 @@ class Place:
 
 
 def find_place(run_x: Floats, run_values: Floats, one: EvenPass, name: str, apart: float) -> Place:
-    """The shift at which the correlation of two filtered signals is the largest.
+    """The shift at which the cross-correlation of two filtered signals is the largest.
 
     run_x : [m], shape (points,), ascending, of the run's evaluated range
     run_values : shape (points,), filtered
     name : of the signal of the pass
     apart : [m] from the place found, beyond which another place is told: half a span
 
-    Both are detrended; the correlation is that over the length on which they overlap, which must be at least
-    half of the shorter one. Raises InputError where the correlation is below 0.5.
+    Both are detrended. Pearson's correlation over the length on which they overlap, at least half of the
+    longest one, is weighed by the root of that length's share. Raises InputError where it is below 0.5.
     """
     longest = max(float(one.x[-1] - one.x[0]), float(run_x[-1] - run_x[0]))
     grid = max(_GRID, longest / _MOST_POINTS)
     a, b = _on_grid(run_x, run_values, grid), _on_grid(one.x, one.filtered[name], grid)
-    least = LEAST_OVERLAP * min(a.size, b.size)
-    lags, r = _correlations(a, b, least)
-    best = int(np.argmax(r))
-    found = _at_peak(lags, r, best) * grid + run_x[0] - one.x[0]
+    there = one.without_gaps(one.x[0] + grid * np.arange(b.size))
+    lags, r, share = _correlations(a, b, there)
+    weighed: Floats = np.where(share >= LEAST_OVERLAP, r * np.sqrt(share), -1.0)
+    best = int(np.argmax(weighed))
+    begin = float(run_x[0] - one.x[0])
     if r[best] < LEAST_CORRELATION:
         raise InputError(
             f"{one.name}: no clear place along the line: the {name}s of run and measurement correlate by"
             f" {r[best]:.2f} at most, must be at least {LEAST_CORRELATION:g}; give the shift"
         )
-    return Place(found, float(r[best]), _other(lags * grid + run_x[0] - one.x[0], r, best, apart))
+    other = _other(lags * grid + begin, r, weighed, best, apart)
+    return Place(_at_peak(lags, weighed, best) * grid + begin, float(r[best]), other)
 
 
 def correlation_at(run_x: Floats, run_values: Floats, one: EvenPass, name: str, shift: float) -> float | None:
@@ -216,22 +225,27 @@ def _on_grid(x: Floats, values: Floats, grid: float) -> Floats:
     return _detrended(np.interp(at, x, values))
 
 
-def _correlations(a: Floats, b: Floats, least: float) -> tuple[NDArray[np.int64], Floats]:
-    """Lags, by which ``b`` begins behind ``a``, and Pearson's correlation where they overlap enough."""
+def _correlations(a: Floats, b: Floats, there: NDArray[np.bool_]) -> tuple[NDArray[np.int64], Floats, Floats]:
+    """Lags, Pearson's correlation where the two overlap, and that length's share of the longest one.
+
+    there : shape of ``b``: what of it counts
+    """
     from scipy.signal import correlate, correlation_lags
 
     def summed(u: Floats, v: Floats) -> Floats:
         found: Floats = correlate(u, v, method="fft")
         return found
 
-    ones_a, ones_b = np.ones(a.size), np.ones(b.size)
+    ones_a, ones_b = np.ones(a.size), there.astype(float)
+    b = np.where(there, b, 0.0)
     n = np.maximum(np.round(summed(ones_a, ones_b)), 1)
     mean_a, mean_b = summed(a, ones_b) / n, summed(ones_a, b) / n
     spread = (summed(a * a, ones_b) / n - mean_a**2) * (summed(ones_a, b * b) / n - mean_b**2)
     scale = max(float(a.var() * b.var()), 1e-30)
-    r = (summed(a, b) / n - mean_a * mean_b) / np.sqrt(np.maximum(spread, 1e-6 * scale))
-    lags: Any = correlation_lags(a.size, b.size)
-    return lags, np.where(n >= least, r, -1.0)
+    r: Floats = (summed(a, b) / n - mean_a * mean_b) / np.sqrt(np.maximum(spread, 1e-6 * scale))
+    lags: NDArray[np.int64] = correlation_lags(a.size, b.size)
+    share: Floats = n / n.max()
+    return lags, r, share
 
 
 def _at_peak(lags: NDArray[np.int64], r: Floats, best: int) -> float:
@@ -244,12 +258,14 @@ def _at_peak(lags: NDArray[np.int64], r: Floats, best: int) -> float:
     return float(lags[best])
 
 
-def _other(shifts: Floats, r: Floats, best: int, apart: float) -> tuple[float, float] | None:
+def _other(shifts: Floats, r: Floats, weighed: Floats, best: int, apart: float) -> tuple[float, float] | None:
+    """The best place away from the one found, where it is nearly as good."""
     away = np.abs(shifts - shifts[best]) > apart
     if not away.any():
         return None
-    second = int(np.flatnonzero(away)[np.argmax(r[away])])
-    return (float(shifts[second]), float(r[second])) if r[second] > r[best] - ALIKE else None
+    second = int(np.flatnonzero(away)[np.argmax(weighed[away])])
+    alike = weighed[second] > weighed[best] - ALIKE
+    return (float(shifts[second]), float(r[second])) if alike else None
 
 
 def check_shift(shift: float | None) -> None:
