@@ -197,7 +197,7 @@ def find_place(run_x: Floats, run_values: Floats, one: EvenPass, name: str, apar
             f"{one.name}: no clear place along the line: the {name}s of run and measurement correlate by"
             f" {r[best]:.2f} at most, must be at least {LEAST_CORRELATION:g}; give the shift"
         )
-    other = _other(lags * grid + begin, r, weighed, best, apart)
+    other = _other(lags.astype(float) * grid + begin, r, weighed, best, apart)
     return Place(_at_peak(lags, weighed, best) * grid + begin, float(r[best]), other)
 
 
