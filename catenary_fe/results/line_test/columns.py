@@ -147,7 +147,8 @@ def _unit_of(raw: RawColumn, name: str) -> str:
 
 def _by_heading(raw: RawColumn) -> tuple[str, int | None, str] | None:
     """Quantity, number and unit of a heading such as ``force 2 [N]``; None for one that is not known."""
-    heading = raw.heading.split(".")[-1] if re.fullmatch(r"\w+\.\w+", raw.heading) else raw.heading
+    is_field = re.fullmatch(r"[A-Za-z]\w*\.[A-Za-z]\w*", raw.heading)  # of a MATLAB structure
+    heading = raw.heading.split(".")[-1] if is_field else raw.heading
     bracketed = _UNIT_IN_BRACKETS.fullmatch(heading)
     name = bracketed[1] if bracketed else heading
     text = re.sub(r"[\s_]+", "_", name.strip())
