@@ -20,7 +20,7 @@ DEVIATION_LIMIT = 0.20  # of the measured σ
 UPLIFT_LIMIT = 0.20  # of the measured largest uplift
 LEAST_SPANS, LEAST_LENGTH = 22, 1000.0  # [m] either of them, of a line test
 SPEEDS_APART = 0.02  # of the run's, by which a pass may be faster or slower without a word
-_SOURCE = "comparison with line tests, EN 50318:2018 (recalled)"
+_SOURCE = "EN 50318:2018, line tests (recalled)"
 
 
 def pooled(passes: Sequence[ForceStatistics]) -> ForceStatistics | None:
