@@ -80,7 +80,7 @@ def test_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 _OPTIONS = (
     click.option("--map", "mapped", multiple=True, metavar="QUANTITY=HEADING",
-                 help="Which column of measurements holds what, e.g. 'force[N]=CH7'; may be repeated."),
+                 help="Which column holds what, e.g. 'force[N]=CH7'; - for none; may be repeated."),
     click.option("--shift-m", type=float,
                  help="m to add to measured positions; unset: found by correlation of the forces."),
     click.option("--measured-speed-kmh", type=float,

@@ -148,6 +148,18 @@ def test_what_the_user_says_goes_before_headings(tmp_path):
     assert [p.force[0] for p in two.passes] == pytest.approx([105, 107])
 
 
+def test_a_column_that_is_left_out(tmp_path):
+    rows = [(f"12:00:{i:02d}", X[i], FORCE[i]) for i in range(8)]
+    path = csv(tmp_path, "time [hh:mm:ss],position [m],force [N]", rows)
+    with pytest.raises(
+        cf.InputError, match=r"unit 'hh:mm:ss' does not fit a time.*--map time=- leaves it out"
+    ):
+        cf.read_line_test(path)
+    test = cf.read_line_test(path, columns={"time": "-"})
+    assert only(test).time is None and only(test).force == pytest.approx(FORCE)
+    assert "not read: time [hh:mm:ss]" in test.notes[0]
+
+
 def nonsense(position="position [m]", force="force [N]", rows=None):
     rows = rows or list(zip(X, FORCE, strict=True))
     return f"{position},{force}", rows

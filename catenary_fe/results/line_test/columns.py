@@ -28,6 +28,8 @@ _ALIASES = {
     "x": "position", "chainage": "position", "contact_force": "force", "wire_height": "height",
     "contact_wire_height": "height", "displacement": "height", "support_uplift": "uplift",
 }  # fmt: skip
+NOTHING = "-"
+"""In place of a heading: no column holds that quantity, whatever headings say."""
 _NAMES = "|".join(sorted([*KINDS, *_ALIASES], key=len, reverse=True))
 _HEADING = re.compile(
     rf"(?:support_(?P<support>\d+)_(?:at_[\d.]+_m_)?)?(?P<name>{_NAMES})"
@@ -113,7 +115,7 @@ def _mapped(source: Source, given: Map) -> tuple[list[tuple[str, int | None, str
     chosen, faults = [], []
     for key, headings in given.items():
         name, number, unit = _key(key)
-        for i, heading in enumerate(headings, start=1):
+        for i, heading in enumerate(headings if list(headings) != [NOTHING] else [], start=1):
             raw = next(
                 (c for c in source.columns if c.heading.casefold() == heading.strip().casefold()), None
             )
@@ -174,7 +176,9 @@ def _values(raw: RawColumn, name: str, unit: str) -> Any:
         raise ValueError(f"the unit is missing: write {name} [{next(iter(units))}], one of {listed}")
     if unit not in units:
         article = f"a {kind}" if name == kind else f"{name}, a {kind}"
-        raise ValueError(f"unit '{unit}' does not fit {article}: must be one of {listed}")
+        raise ValueError(
+            f"unit '{unit}' does not fit {article}: must be one of {listed}; --map {name}=- leaves it out"
+        )
     values = np.empty(len(raw.values))
     faults = []
     for i, cell in enumerate(raw.values):

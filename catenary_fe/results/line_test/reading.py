@@ -27,7 +27,8 @@ def read_line_test(
     """What was measured in a line test, from one or several files.
 
     paths : of CSV tables, workbooks (.xlsx), MATLAB files (.mat, up to version 7.2) or TDMS files
-    columns : headings by quantity, where they do not say it themselves: ``{"force [N]": "CH7"}``
+    columns : headings by quantity, where they do not say it themselves: ``{"force [N]": "CH7"}``; "-" for a
+        quantity that is not to be read
     support : number (from 1) of the support whose uplift it is, where the files do not say it
 
     Columns that are known: ``position`` (or ``chainage``), ``time``, ``speed``, ``force``, ``height`` of the
