@@ -246,7 +246,10 @@ def test_too_coarse_for_the_filter(apart, passes):
     test = over_position(own, apart=apart)
     if passes:
         compared = cf.compare_with_line_test(own, test, shift=SHIFT)
-        assert "EN 50317 asks for 200, or one every 0.40 m (recalled)" in " ".join(compared.notes)
+        said = "EN 50317 asks for 200, or one every 0.40 m (recalled)"
+        assert said in " ".join(compared.notes)
+        finer = cf.compare_with_line_test(own, over_position(own, apart=0.39), shift=SHIFT)
+        assert finer.passes[0].rate < 200 and said not in " ".join(finer.notes)
         return
     with pytest.raises(
         cf.InputError, match=r"49.5 samples a second \(1.01 m apart\).*needs at least 50"

@@ -16,7 +16,7 @@ from catenary_fe.results.signal import CUT_OFF, FilterKind, low_pass
 Floats = NDArray[np.float64]
 
 LEAST_RATE = 2.5 * CUT_OFF  # [Hz] fewer samples do not hold what the filter lets through
-USUAL_RATE = 200.0  # [Hz] that EN 50317 asks for, or a sample every 0.40 m (recalled)
+USUAL_RATE, USUAL_DISTANCE = 200.0, 0.40  # [Hz], [m]: EN 50317 asks for one of them (recalled)
 LONGEST_GAP = 0.5 / CUT_OFF  # [s] between rows, over which a curve may be drawn
 BEFORE = 0.5  # [s] whose gaps still matter: the filter remembers them
 LEAST_CORRELATION = 0.5  # below it no place is found
@@ -90,9 +90,8 @@ def even_pass(
     """
     t, x, notes = _axes(one, speed, run_speed)
     gaps = np.diff(t)
-    median = float(np.median(gaps))
+    median, apart = float(np.median(gaps)), float(np.median(np.diff(x)))
     if 1 / median < LEAST_RATE * (1 - 1e-6):
-        apart = float(np.median(np.diff(x)))
         raise InputError(
             f"{one.name}: {1 / median:.3g} samples a second ({apart:.3g} m apart): the filter of {CUT_OFF:g}"
             f" Hz needs at least {LEAST_RATE:g}; measure more finely, or look at the unit of position or time"
@@ -105,10 +104,10 @@ def even_pass(
         even = t[0] + step * np.arange(int((t[-1] - t[0]) / step) + 1)
         signals = {n: _through(t, v, even) for n, v in signals.items()}
         notes.append(f"{one.name}: rows at uneven times, put to {1 / step:.4g} a second")
-    if 1 / step < USUAL_RATE * (1 - 1e-6):
+    if 1 / step < USUAL_RATE * (1 - 1e-6) and apart > USUAL_DISTANCE * (1 + 1e-6):
         notes.append(
             f"{one.name}: {1 / step:.3g} samples a second; EN 50317 asks for {USUAL_RATE:g}, or one"
-            " every 0.40 m (recalled)"
+            f" every {USUAL_DISTANCE:.2f} m (recalled)"
         )
     x = np.interp(even, t, x)
     return EvenPass(
