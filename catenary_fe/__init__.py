@@ -67,6 +67,13 @@ if TYPE_CHECKING:
         load_run,
         save_catenary,
     )
+    from catenary_fe.results.line_test import (
+        LineTest,
+        LineTestComparison,
+        MeasuredPass,
+        compare_with_line_test,
+        read_line_test,
+    )
     from catenary_fe.statics import (
         Shape,
         against_design,
@@ -109,6 +116,13 @@ _ROOMS = {
         "criteria_rows",
         "load_run",
         "save_catenary",
+    ),
+    "results.line_test": (
+        "LineTest",
+        "LineTestComparison",
+        "MeasuredPass",
+        "compare_with_line_test",
+        "read_line_test",
     ),
     "studies.simulate": ("simulate",),
     "layout": (
@@ -179,6 +193,9 @@ __all__ = [
     "Ice",
     "InputError",
     "Line",
+    "LineTest",
+    "LineTestComparison",
+    "MeasuredPass",
     "MeasuredWire",
     "MeshSettings",
     "ModalRun",
@@ -211,6 +228,7 @@ __all__ = [
     "build_line",
     "case_rows",
     "catenary_from_tables",
+    "compare_with_line_test",
     "criteria_rows",
     "elasticity",
     "even_nodes",
@@ -227,6 +245,7 @@ __all__ = [
     "load_pantograph",
     "load_run",
     "modal_run",
+    "read_line_test",
     "read_measured",
     "run_wire",
     "save_catenary",

@@ -63,7 +63,7 @@ _SHORT_HELP = {
     run: "Run pantographs along a layout.",
     sweep: "Runs over speeds, pantographs and values of a layout.",
     report: "One HTML page of a run, to read and hand on.",
-    compare: "Runs side by side: inputs, figures, traces.",
+    compare: "Runs side by side, or a run beside a line test.",
     film: "Film of a run, as GIF or MP4.",
     waves: "Waves of a run over place and time.",
     view: "The model in Exudyn's own viewer.",

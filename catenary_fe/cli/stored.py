@@ -12,6 +12,7 @@ import click
 
 from catenary_fe.cli import options
 from catenary_fe.cli.folder import changed_files, folder_of, output_folder, run_in, save_picture
+from catenary_fe.cli.line_test import TestOptions, compare_line_test, test_options
 from catenary_fe.cli.run import write_run
 from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import (
@@ -24,9 +25,10 @@ from catenary_fe.cli.terminal import (
     working,
 )
 from catenary_fe.cli.verdicts import evaluated, kept_evaluation, with_elasticity
-from catenary_fe.layout import InputError, PowerSystem, load_catenary
+from catenary_fe.layout import InputError, PowerSystem, counted, load_catenary
 from catenary_fe.layout.arguments import number
 from catenary_fe.results.files import write_text
+from catenary_fe.results.line_test.files import is_measurement
 from catenary_fe.results.signal import FilterKind
 
 if TYPE_CHECKING:
@@ -69,18 +71,41 @@ def report(
 
 @click.command(
     epilog="\b\nExamples:\n  catenary-fe compare run250 run300\n"
-    "  catenary-fe compare before after -o comparison"
+    "  catenary-fe compare before after -o comparison\n"
+    "  catenary-fe compare run250 measured.csv --map 'force[N]=CH7' -o line_test"
 )
-@click.argument("folders", nargs=-1, required=True, type=click.Path(), metavar="FOLDER FOLDER...")
+@click.argument("folders", nargs=-1, required=True, type=click.Path(), metavar="FOLDER FOLDER|TABLE...")
 @options.low_pass(
     "Low-pass of the contact forces; unset: as in the runs' summaries, causal where they differ."
 )
+@test_options
 @options.answer()
-def compare(folders: tuple[str, ...], filter_kind: FilterKind | None, answer: Answer) -> None:
+def compare(
+    folders: tuple[str, ...], filter_kind: FilterKind | None, test: TestOptions, answer: Answer
+) -> int:
     """Put the runs in two or more FOLDERs side by side: what went in differently, and what came out.
 
-    With -o, also pictures of forces, differences and uplifts, and a page comparison.html.
+    With a TABLE of measurements (.csv, .xlsx, .mat, .tdms) in place of a second run: the run beside a line
+    test. Headings name position or time, force, height, uplift, with units. Exit code 1 where a limit of
+    EN 50318's comparison with line tests (recalled) is missed.
+
+    With -o, also pictures, and a page comparison.html or line_test.html.
     """
+    measured = [name for name in folders if is_measurement(name) and not Path(name).is_dir()]
+    if measured:
+        runs_given = [name for name in folders if name not in measured]
+        if len(runs_given) != 1:
+            raise InputError(
+                f"{counted(len(runs_given), 'run')} and {counted(len(measured), 'table')} of measurements:"
+                " give one run, and tables of it"
+            )
+        return compare_line_test(runs_given[0], measured, filter_kind, test, answer)
+    test.refuse()
+    _compare_runs(folders, filter_kind, answer)
+    return 0
+
+
+def _compare_runs(folders: tuple[str, ...], filter_kind: FilterKind | None, answer: Answer) -> None:
     from catenary_fe.results.comparison import failed_checks, figures_table, input_differences, key_figures
 
     runs, labels = [run_in(folder) for folder in folders], _labels(folders)

@@ -129,6 +129,8 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "Shape": ("a static shape", "give find_form(catenary)"),
     "ExudynModel": ("a multibody model", "exudyn_model(shape, pantographs) builds one"),
     "Run": ("a run", "simulate makes one, load_run reads one"),
+    "LineTest": ("a line test", "read_line_test reads files, LineTest(passes=[...]) makes one"),
+    "LineTestComparison": ("a comparison with a line test", "compare_with_line_test makes one"),
     "Modes": ("modes of a line", "give solve_modes(shape)"),
     "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
     "TimeSettings": ("TimeSettings", "give TimeSettings(step=...), or leave it out"),

@@ -13,14 +13,17 @@ from typing import Any
 
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import shorten
-from catenary_fe.layout.toml import read_text
+from catenary_fe.layout.toml import LARGEST_FILE, read_text
 
-_FACTORS = {  # to SI, by kind of quantity
+FACTORS: dict[str, dict[str, float]] = {
     "length": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3},
     "force": {"N": 1.0, "kN": 1e3},
     "stiffness": {"N/m": 1.0, "kN/m": 1e3, "N/mm": 1e3},
     "mass": {"kg": 1.0},
+    "time": {"s": 1.0, "ms": 1e-3},
+    "speed": {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6},
 }
+"""From units to SI, by kind of quantity."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?\d+,\d+")
 _YES = {"yes": True, "true": True, "1": True, "no": False, "false": False, "0": False}
@@ -109,7 +112,7 @@ def read_table(
     Raises InputError, one line for each fault with its row and column.
     """
     path = Path(path)
-    lines, cells = _cells(path)
+    lines, cells = read_cells(path)
     header, body = cells[0], cells[1:]
     names, units = _headings(path, header, columns, needed)
     if not numbered and (wrong := [h for h, n in zip(header, names, strict=True) if _common(n) != n]):
@@ -198,9 +201,16 @@ def by_section(table: Table) -> dict[int, Table]:
     return parts
 
 
-def _cells(path: Path) -> tuple[list[int], list[list[str]]]:
-    """Numbers of the rows that are not empty, and their cells."""
-    text = read_text(path, "table")
+def read_cells(
+    path: Path, most_rows: int = MOST_ROWS, most_bytes: int = LARGEST_FILE, what: str = "the table of a line"
+) -> tuple[list[int], list[list[str]]]:
+    """Numbers of the rows that are not empty, and their cells: the header counts as the first.
+
+    most_rows, most_bytes, what : how large it may be, and what it is then no more
+
+    Raises InputError.
+    """
+    text = read_text(path, "table", most_bytes)
     header = next((line for line in text.splitlines() if line.strip()), "")
     separator = max(",;\t", key=header.count)
     found = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
@@ -210,8 +220,8 @@ def _cells(path: Path) -> tuple[list[int], list[list[str]]]:
             if any(cell.strip() for cell in row):
                 lines.append(number)
                 cells.append([cell.strip() for cell in row])
-            if len(lines) > MOST_ROWS:
-                raise InputError(f"{path}: more than {MOST_ROWS:,} rows: that is not the table of a line")
+            if len(lines) > most_rows:
+                raise InputError(f"{path}: more than {most_rows:,} rows: that is not {what}")
     except csv.Error as error:
         raise InputError(f"{path}: row {len(lines) + 1}: not a CSV table: {error}") from None
     if not cells:
@@ -275,7 +285,7 @@ def _heading_fault(name: str, unit: str, columns: Mapping[str, Column]) -> str |
         known = ", ".join(_example(n, c) for n, c in columns.items() if c.kind != "result")
         hint = f"did you mean {_example(near[0], columns[near[0]])}?" if near else f"known are {known}"
         return f"no column that is known; {hint}"
-    units = _FACTORS.get(column.kind)
+    units = FACTORS.get(column.kind)
     if units is None:
         wrong = unit and column.kind != "result"
         return f"{name} has no unit; write {name}" if wrong else None
@@ -297,14 +307,15 @@ def _value(cell: str, column: Column, unit: str) -> Any:
     reader: dict[str, Callable[[str, Column], Any]] = {"text": _word, "yes": _yes, "whole": _whole}
     if column.kind in reader:
         return reader[column.kind](cell, column)
-    value = _number(cell)
+    value = number_in(cell)
     if column.least is not None and value < column.least:
         raise ValueError(f"{cell}: must be at least {column.least:g}")
-    factor = _FACTORS[column.kind][unit]
+    factor = FACTORS[column.kind][unit]
     return value if factor == 1 else round(value * factor, 12)
 
 
-def _number(cell: str) -> float:
+def number_in(cell: str) -> float:
+    """The number that a cell holds. Raises ValueError with what is wrong."""
     if _NUMBER.fullmatch(cell) and abs(float(cell)) < 1e15:
         return float(cell)
     if _COMMA.fullmatch(cell):

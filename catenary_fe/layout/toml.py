@@ -43,14 +43,15 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
         raise InputError(f"{path}: {slip}" if slip else f"{path}: not a TOML file: {error}") from None
 
 
-def read_text(path: Path, kind: str) -> str:
+def read_text(path: Path, kind: str, most: int = LARGEST_FILE) -> str:
     """The text of a file in UTF-8, with or without a byte order mark.
 
     kind : of file, as an error calls it
+    most : [bytes] that it may have
 
     Raises InputError where it cannot be read or is none, with the line.
     """
-    content = _read_bytes(path, kind)
+    content = read_bytes(path, kind, most)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -84,16 +85,23 @@ def _slip(text: str, complaint: str) -> str | None:
     return None
 
 
-def _read_bytes(path: Path, kind: str) -> bytes:
+def read_bytes(path: Path, kind: str, most: int = LARGEST_FILE) -> bytes:
+    """A file's content.
+
+    kind : of file, as an error calls it
+    most : [bytes] that it may have
+
+    Raises InputError where it cannot be read, or is larger.
+    """
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)  # devices and pipes have no size, nor need they end
+            content = file.read(most + 1)  # devices and pipes have no size, nor need they end
     except FileNotFoundError:
         raise InputError(f"{path}: no such {kind} file; check the name and the folder") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError:
         raise InputError(f"{str(path)!r}: no file can have this name; check it") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{path}: larger than {LARGEST_FILE:,} bytes: that is not a {kind} file")
+    if len(content) > most:
+        raise InputError(f"{path}: larger than {most:,} bytes: that is not a {kind} file")
     return content

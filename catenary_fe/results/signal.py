@@ -35,6 +35,11 @@ def band_pass(signal: Floats, step: float, lower: float, upper: float, kind: Fil
     return _filter(_filter(signal, step, upper, "lowpass", kind), step, lower, "highpass", kind)
 
 
+def high_pass(signal: Floats, step: float, cut_off: float, kind: FilterKind = "causal") -> Floats:
+    """What passes a sixth-order high-pass at ``cut_off`` [Hz]."""
+    return _filter(signal, step, cut_off, "highpass", kind)
+
+
 def _filter(signal: Floats, step: float, cut_off: float, band: str, kind: FilterKind) -> Floats:
     from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt
 

@@ -30,6 +30,8 @@ EQUAL = {
     "spans": 3, "span_length": 50.0, "droppers": [DROPPER], "contact_wire": WIRE, "messenger_wire": WIRE,
     "support": cf.Support(steady_arm=ARM),
 }  # fmt: skip
+PLACES_MEASURED = np.arange(100.0, 200.0, 0.2)
+TEST = cf.LineTest([cf.MeasuredPass(position=PLACES_MEASURED, force=100 + np.sin(PLACES_MEASURED))])
 ELASTIC, RULE = cf.ElasticPantograph(force=100.0), "EN 50367 AC"
 
 
@@ -70,6 +72,10 @@ def graded(name):
     return lambda g, bad: cf.graded_nodes(**(values | {name: bad}))
 
 
+def line_test(name):
+    return lambda g, bad: cf.compare_with_line_test(g.run, TEST, **{name: bad})
+
+
 CALLS = {
     "load_catenary": (lambda g, b: cf.load_catenary(b), PATH),
     "load_pantograph": (lambda g, b: cf.load_pantograph(b), PATH),
@@ -98,6 +104,20 @@ CALLS = {
     "fit_measured: measured": (lambda g, b: cf.fit_measured(g.line, b), OBJECT),
     "MeasuredWire: x": (lambda g, b: cf.MeasuredWire(b, [5.3, 5.3]), (*NUMBERS, [1.0], [2.0, 1.0])),
     "MeasuredWire: height": (lambda g, b: cf.MeasuredWire([0.0, 1.0], b), (*NUMBERS, [1.0], [53.0, 5.3])),
+    "read_line_test": (lambda g, b: cf.read_line_test(b), (*PATH, "missing.csv", "run.nc", [], [3])),
+    "read_line_test: columns": (lambda g, b: cf.read_line_test("no.csv", columns=b), (*OBJECT[:2], {3: "x"})),
+    "read_line_test: support": (lambda g, b: cf.read_line_test("no.csv", support=b), WHOLE),
+    "compare_with_line_test": (lambda g, b: cf.compare_with_line_test(b, TEST), OBJECT),
+    "compare_with_line_test: test": (lambda g, b: cf.compare_with_line_test(g.run, b), OBJECT),
+    "compare_with_line_test: shift": (line_test("shift"), (*NUMBER, 1e4)),
+    "compare_with_line_test: speed": (line_test("speed"), (*POSITIVE, 300.0)),
+    "compare_with_line_test: pantograph": (line_test("pantograph"), ("x", 1.5, None, -1, 1, True)),
+    "compare_with_line_test: filter": (line_test("filter"), CHOICE),
+    "compare_with_line_test: is_filtered": (line_test("is_filtered"), ("x", 1, None, [], ARRAY)),
+    "LineTest": (lambda g, b: cf.LineTest(b), (*OBJECT, [3])),
+    "MeasuredPass: position": (lambda g, b: cf.MeasuredPass(position=b, force=[1.0, 2.0]), NUMBERS),
+    "MeasuredPass: force": (lambda g, b: cf.MeasuredPass(position=[1.0, 2.0], force=b), NUMBERS),
+    "MeasuredPass: uplift": (lambda g, b: cf.MeasuredPass(uplift=b), (*OBJECT[:4], {0: [1.0]}, {1: ["x"]})),
     "with_dropper_lengths": (lambda g, b: g.line.with_dropper_lengths(b), (*NUMBERS, [1.0], None)),
     "has_stitch_wire": (lambda g, b: g.line.has_stitch_wire(b), (*WHOLE[:-3], 99)),
     "simulate: shape": (lambda g, b: cf.simulate(b, [g.head], speed=50.0), OBJECT),
@@ -220,6 +240,7 @@ CALLS = {
     "plot_run_waves: spans": (lambda g, b: views.plot_run_waves(g.run, spans=b), SPANS),
     "plot_run_waves: quantity": (lambda g, b: views.plot_run_waves(g.run, quantity=b), CHOICE),
     "plot_run_waves: wire": (lambda g, b: views.plot_run_waves(g.run, wire=b), CHOICE),
+    "plot_line_test": (lambda g, b: views.plot_line_test(b), OBJECT),
     "plot_force_spectrum": (lambda g, b: views.plot_force_spectrum(g.run, up_to=b), POSITIVE),
     "film: spans": (lambda g, b: film(g.run, "x.gif", spans=b), SPANS),
     "film: slowed": (lambda g, b: film(g.run, "x.gif", slowed=b), POSITIVE),

@@ -18,13 +18,16 @@ from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_wor
 from catenary_fe.results.check import checks_table
 from catenary_fe.results.comparison import failed_checks, figures_table, input_differences, key_figures
 from catenary_fe.results.criteria import criteria_table
+from catenary_fe.results.line_test import LineTestComparison
+from catenary_fe.results.line_test.tables import all_tables
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape
 from catenary_fe.views import comparison
+from catenary_fe.views.line_test import plot_line_test
 from catenary_fe.views.report import series, tables
 from catenary_fe.views.run import plot_force_spectrum, run_pictures
 from catenary_fe.views.static import plot_elasticity
-from catenary_fe.views.style import new_axes, own_style, styled
+from catenary_fe.views.style import new_axes, own_style, run_title, styled
 from catenary_fe.views.waves import plot_run_waves
 
 if TYPE_CHECKING:
@@ -124,6 +127,28 @@ def comparison_page(runs: Sequence[Run], labels: Sequence[str], *, filter: Filte
         },
     }
     return template("comparison.html.j2").render(content)
+
+
+@styled
+def line_test_page(compared: LineTestComparison, title: str) -> str:
+    """HTML of a run beside a line test, complete in itself.
+
+    title : what was compared with what
+    """
+    rows, run = compared.criteria, compared.run
+    known = any(row.limit is not None for row in rows)
+    content = {
+        "title": title,
+        "lead": f"{run_title(run, '')}; pantograph {run.data['pantograph'].values[compared.pantograph]}.",
+        "verdict": f"Deviations: {criteria_in_words(rows)}." if known else "Not judged: no limit is known.",
+        "bad": any(row.passed is False for row in rows),
+        "criteria": tables.Table("", *criteria_table(rows)),
+        "figures": [tables.Table(caption, *found) for caption, found in all_tables(compared)],
+        "warnings": [*failed_checks([run], ["run"]), *compared.warnings],
+        "notes": compared.notes,
+        "picture_address": svg_address(plot_line_test(compared)),
+    }
+    return template("line_test.html.j2").render(content)
 
 
 @dataclass(frozen=True)
