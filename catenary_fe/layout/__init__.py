@@ -6,6 +6,7 @@ from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.conditions import (
     Conditions,
     Effect,
+    Gusts,
     Ice,
     Wind,
     WirePart,
@@ -60,6 +61,7 @@ __all__ = [
     "Effect",
     "ElasticPantograph",
     "Equipment",
+    "Gusts",
     "Ice",
     "InputError",
     "Line",

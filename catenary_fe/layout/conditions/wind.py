@@ -43,7 +43,7 @@ class Wind(Parameters):
     direction: Direction = 90.0
     """[°] to which it blows from the line's direction: 90: from the right to the left; -90: to the right"""
     air_density: Positive = 1.25
-    """[kg/m³]"""
+    """[kg/m³] of the air"""
     drag_coefficient: Positive = 1.0
     """[1] of a wire"""
     span_factor: Annotated[float, Field(strict=True, gt=0, le=1)] = 1.0
