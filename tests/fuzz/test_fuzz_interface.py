@@ -81,7 +81,7 @@ CALLS = {
     "load_pantograph": (lambda g, b: cf.load_pantograph(b), PATH),
     "load_conditions": (lambda g, b: cf.load_conditions(b), PATH),
     "settle": (lambda g, b: cf.settle(b, cf.Conditions()), OBJECT),
-    "settle: conditions": (lambda g, b: cf.settle(g.shape, b), ("x", 3, None, {}, THING, True, ARRAY, [3], [None])),
+    "settle: conditions": (lambda g, b: cf.settle(g.shape, b), (*OBJECT[:3], *OBJECT[4:], [3], [None])),
     "case_rows": (lambda g, b: cf.case_rows(b), OBJECT),
     "load_run": (lambda g, b: cf.load_run(b), (*PATH, "missing.nc", "")),
     "join_sections": (lambda g, b: cf.join_sections(b, []), OBJECT),

@@ -267,7 +267,8 @@ def base_of(place: str) -> str:
         of_owner = {"stitch_wire": "many wires"}.get(owner, "plane")
         return (
             ELSEWHERE.get(last, "plane")
-            if owner not in ("wear", "stitch_wire") and last in ("contact_wire", "curve_radius", "curve_radius_end", "diameter")
+            if owner not in ("wear", "stitch_wire")
+            and last in ("contact_wire", "curve_radius", "curve_radius_end", "diameter")
             else of_owner
         )
     return ELSEWHERE.get(last, "plane")
