@@ -36,6 +36,20 @@ class PackedRows(NamedTuple):
     inner: Floats
 
 
+class Surfaces(NamedTuple):
+    """Irregularities of the contact wires' running surfaces, see ``Irregularity`` in ``fe.contact``.
+
+    first, step : [m], shape (contact wires,)
+    last : shape (contact wires,), number of each one's last place; -1: even
+    values : shape (contact wires, places, 2)
+    """
+
+    first: Floats
+    step: Floats
+    last: Integers
+    values: Floats
+
+
 class Wires(NamedTuple):
     """State of the wires, each of shape (size, slots): q*, v*, c, x of :class:`Scheme`, and q* + β v*."""
 

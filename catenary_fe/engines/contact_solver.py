@@ -15,6 +15,7 @@ from catenary_fe.engines.arrays import (
     Floats,
     PantographParameters,
     PantographState,
+    Surfaces,
     Wires,
     Work,
 )
@@ -103,7 +104,25 @@ def weigh_contact(
         lateral += shape[m] * line.lateral[node, which]
         at[m] = line.at[node, which]
     work.node[c, j] = e
+    if line.surfaces.last[heads.wire[c, j]] >= 0:
+        height, slope = surface_at(line.surfaces, heads.wire[c, j], position)
+        shape[4] += height
+        rise[4] += slope
     return e, lateral
+
+
+@compiled
+def surface_at(surfaces: Surfaces, wire: int, position: float) -> tuple[float, float]:
+    """Height [m] and slope of a contact wire's running surface above its line."""
+    last, h = surfaces.last[wire], surfaces.step[wire]
+    share = min(max((position - surfaces.first[wire]) / h, 0.0), float(last))
+    e = min(int(share), last - 1)
+    xi = share - e
+    a, da = surfaces.values[wire, e, 0], surfaces.values[wire, e, 1]
+    b, db = surfaces.values[wire, e + 1, 0], surfaces.values[wire, e + 1, 1]
+    height = a + xi * (h * da + xi * (3 * (b - a) - h * (2 * da + db) + xi * (2 * (a - b) + h * (da + db))))
+    slope = da + xi * (2 * (3 * (b - a) / h - 2 * da - db) + 3 * xi * (2 * (a - b) / h + da + db))
+    return height, slope
 
 
 @compiled

@@ -9,15 +9,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import PantographParameters, PantographState, Records
+from catenary_fe.engines.arrays import PantographParameters, PantographState, Records, Surfaces
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.history import History, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.sections import Computed
-from catenary_fe.fe.contact import BaseLine, Contact, PlacedPantograph, contacts_of
+from catenary_fe.fe.contact import BaseLine, Contact, ContactPath, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+def surfaces_of(paths: Sequence[ContactPath]) -> Surfaces:
+    """The contact wires' running surfaces as arrays."""
+    each = [path.irregularity for path in paths]
+    most = max((len(one.values) for one in each if one), default=0)
+    values = np.zeros((len(each), most, 2))
+    for n, one in enumerate(each):
+        if one:
+            values[n, : len(one.values)] = one.values
+    return Surfaces(
+        first=np.array([one.first if one else 0.0 for one in each]),
+        step=np.array([one.step if one else 1.0 for one in each]),
+        last=np.array([len(one.values) - 1 if one else -1 for one in each]),
+        values=values,
+    )
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,31 @@ from catenary_fe.layout.substructure import Strip, Substructure
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Irregularity:
+    """By how much the running surface of a contact wire lies above its axis line, over the place.
+
+    first, step : [m] along the track: the first place, and from one to the next
+    values : [m and 1], shape (places, 2), heights and their slopes; cubic between places
+    """
+
+    first: float
+    step: float
+    values: Floats
+
+    @cached_property
+    def _curve(self) -> Any:
+        from scipy.interpolate import CubicHermiteSpline
+
+        x = self.first + self.step * np.arange(len(self.values))
+        return CubicHermiteSpline(x, *self.values.T)
+
+    def at(self, position: float) -> tuple[float, float]:
+        """Height [m] and slope at a place [m]; that of the nearest end beyond them."""
+        x = np.clip(position, self._curve.x[0], self._curve.x[-1])
+        return float(self._curve(x)), float(self._curve(x, 1))
 
 
 @dataclass(frozen=True)
@@ -29,6 +56,7 @@ class ContactPath:
     supports : numbers of the nodes at the supports
     section : number of its tension section, from 0
     across, across_dof : as ``index`` and ``dof``, of place and slope to the left; in the plane no rows
+    irregularity : of its running surface, or None where that is even
     """
 
     x: Floats
@@ -41,6 +69,11 @@ class ContactPath:
     section: int = 0
     across: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     across_dof: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    irregularity: Irregularity | None = None
+
+    def surface(self, position: float) -> tuple[float, float]:
+        """[m] and slope of the running surface above the wire's line, at a place [m] along the track."""
+        return self.irregularity.at(position) if self.irregularity else (0.0, 0.0)
 
     def meets(self, position: float) -> bool:
         """Whether a place [m] along the track lies between its ends."""

@@ -8,14 +8,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from catenary_fe.fe.cable import scattered
+from catenary_fe.fe.contact import Irregularity
 from catenary_fe.fe.spring import Springs
-from catenary_fe.fe.system import System, TimeLoad
+from catenary_fe.fe.system import System, TimeLoad, WireNodes
 from catenary_fe.layout import GRAVITY, InputError
 from catenary_fe.layout.conditions import Effect, WirePart
 
 Floats = NDArray[np.float64]
+_SURFACE = 0.05  # [m] between places of a running surface: ten of them in the shortest wave that matters
 _ACROSS = 1  # of the three rows of an effect: along the track, to the left, up
 
 
@@ -43,6 +46,7 @@ def _with(system: System, effect: Effect) -> System:
         mass=_more(system, system.mass, np.tile(mass, (3, 1))),
         linear_damping=_more(system, system.linear_damping, damping),
         droppers=_lengthened(system, effect),
+        wires=tuple(_with_surface(wire, effect) for wire in system.wires),
         time_loads=(*system.time_loads, *_time_loads(system, effect, parts, counts)),
     )
 
@@ -81,6 +85,22 @@ def _more(system: System, matrix: Any, per_length: Floats) -> Any:
     return (
         matrix + scattered([(system.elements(), system.element_mass * share[:, :, None])], system.dof.size)
     ).tocsr()
+
+
+def _with_surface(wire: WireNodes, effect: Effect) -> WireNodes:
+    """A contact wire with the effect's irregularity on top of what it has."""
+    if not wire.contact:
+        return wire
+    assert wire.wire is not None
+    x = np.arange(wire.x[0], wire.x[-1] + _SURFACE, _SURFACE)
+    heights = effect.irregularity(WirePart(wire.kind, wire.wire, x))
+    if not heights.any():
+        return wire
+    values = np.column_stack([heights, CubicSpline(x, heights)(x, 1)])
+    before = wire.irregularity
+    if before:
+        values += before.values
+    return replace(wire, irregularity=Irregularity(float(x[0]), _SURFACE, values))
 
 
 def _lengthened(system: System, effect: Effect) -> Springs:

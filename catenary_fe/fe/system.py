@@ -26,7 +26,7 @@ from catenary_fe.fe.cable import (
     strain_energy,
     tangent_blocks,
 )
-from catenary_fe.fe.contact import BaseLine, ContactPath
+from catenary_fe.fe.contact import BaseLine, ContactPath, Irregularity
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.layout import Wire
 from catenary_fe.layout.conditions.effect import WireKind
@@ -47,6 +47,7 @@ class WireNodes:
     clamps : likewise where something is fixed to it, its ends among them: there its tension may step
     tension : [N], shape (nodes - 1,), nominal pull along the track in each element
     section : number of its tension section, from 0
+    irregularity : of a contact wire's running surface, or None
     kind, wire : what it is called in a layout, and its parameters; none of a wire by itself
     """
 
@@ -60,6 +61,7 @@ class WireNodes:
     section: int = 0
     kind: WireKind = "contact_wire"
     wire: Wire | None = None
+    irregularity: Irregularity | None = None
 
 
 @dataclass(frozen=True)
@@ -168,6 +170,7 @@ class System:
                     dof=self.dof[index],
                     supports=wire.supports,
                     section=wire.section,
+                    irregularity=wire.irregularity,
                     across=lateral if self.spatial else lateral[:0],
                     across_dof=self.dof[lateral] if self.spatial else lateral[:0],
                 )

@@ -5,6 +5,7 @@ from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.conditions import (
     Conditions,
+    ContactWireIrregularity,
     Effect,
     Gusts,
     Ice,
@@ -56,6 +57,7 @@ __all__ = [
     "Catenary",
     "CatenaryError",
     "Conditions",
+    "ContactWireIrregularity",
     "DescribedPantograph",
     "Dropper",
     "Effect",

@@ -149,7 +149,8 @@ class _StaticContact:
             rows[j, : system.size] = -system.gather(row)
             own = slice(*self.first[contact.pantograph : contact.pantograph + 2])
             rows[j, own] = bodies[contact.pantograph].row(contact.strip, lateral)
-            self.rest[j] = float(row @ system.reference) - system.contact_wire_height
+            surface, _ = system.contact_paths[contact.wire].surface(contact.position)
+            self.rest[j] = float(row @ system.reference) - system.contact_wire_height + surface
             if contact.strip.body is None:
                 self.base[j] = risen[contact.pantograph]
         self.rows: Any = rows.tocsr()

@@ -277,10 +277,13 @@ class Contacts:
         if contact.rolls:
             lateral = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Position, place)[1]
             mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [0, float(lateral), 0])
+        height, climb = path.surface(position)
+        if path.irregularity:
+            mbs.SetObjectParameter(contact.connector, "offset", list(height * np.eye(3)[self._up]))
         damping = list(mbs.GetObjectParameter(contact.connector, "damping"))
         if damping[self._up]:
             slope = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Director1, place)
-            damping[0] = speed * float(slope[self._up] / slope[0])
+            damping[0] = speed * (float(slope[self._up] / slope[0]) + climb)
             mbs.SetObjectParameter(contact.connector, "damping", damping)
         return changed
 

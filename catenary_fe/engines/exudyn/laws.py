@@ -31,7 +31,7 @@ def push_only(mbs: exu.MainSystem, up: int, contact: ContactLaw) -> object:
 
     Stiffness and damping are the connector's, upright; preload and points are in the law. The connector's
     damping along the track, which has no use here, holds what the wire's inclination adds to its velocity as
-    the strip sees it.
+    the strip sees it. Its offset, by which the running surface lies above the wire's line, Exudyn takes off.
     """
     zero = exu.symbolic.Real(0.0)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, Surfaces
 
 
 class ComplianceColumns(NamedTuple):
@@ -67,6 +67,7 @@ class Line(NamedTuple):
     links, stretch : steady arms, inclined elements
     load : [N], shape (size,), constant, see :class:`~catenary_fe.fe.reduction.LinearModel`
     patterns : [N], rows of coordinates, of loads that vary in time
+    surfaces : of the contact wires
     supports, heights, tensions : coordinates of heights at supports and of all nodes, and of tensions
     """
 
@@ -88,6 +89,7 @@ class Line(NamedTuple):
     stretch: StretchCoupling
     load: Floats
     patterns: CsrRows
+    surfaces: Surfaces
     supports: Integers
     heights: Integers
     tensions: Integers

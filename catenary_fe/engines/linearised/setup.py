@@ -19,6 +19,7 @@ from catenary_fe.engines.linearised.arrays import (
     SteadyArmBars,
     StretchCoupling,
 )
+from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.contact import BaseLine
@@ -197,6 +198,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
         patterns=csr_rows(model.patterns),
+        surfaces=surfaces_of(contacts),
         supports=np.concatenate([wire.dof[wire.supports, 0] for wire in contacts]),
         heights=model.heights,
         tensions=model.tensions,

@@ -185,4 +185,5 @@ def contact_row(setup: Setup, wire: int, position: float) -> tuple[Floats, float
     row = np.zeros(setup.model.size)
     row[dof[dof >= 0]] = weights[dof >= 0]
     height, lateral = (weights @ values[e : e + 2].ravel() for values in (path.profile, path.lateral))
-    return row, float(height - setup.nominal), float(lateral)
+    surface, _ = path.surface(position)
+    return row, float(height - setup.nominal) + surface, float(lateral)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows, Surfaces
 from catenary_fe.engines.nonlinear.cables import Elements
 
 
@@ -55,6 +55,7 @@ class Stations(NamedTuple):
     left : shape (nodes, 2), of those to the left the numbers among all coordinates; in the plane no rows
     supports : shape (contact wires * supports,), numbers of heights among all coordinates; FIXED: not here
     heights : shape (nodes of all wires,), likewise
+    surfaces : of the contact wires
     rest : [m], shape (nodes of all wires,), heights that uplifts count from
     rest_supports : [m], shape (contact wires * supports,), likewise at supports
     """
@@ -69,6 +70,7 @@ class Stations(NamedTuple):
     left: Integers
     supports: Integers
     heights: Integers
+    surfaces: Surfaces
     rest: Floats
     rest_supports: Floats
 

@@ -13,6 +13,7 @@ from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays, Stations
 from catenary_fe.engines.nonlinear.cables import Elements
+from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.fe.cuts import section_part
 from catenary_fe.fe.spring import Springs
@@ -104,6 +105,7 @@ class Parameters:
             left=np.concatenate([path.across for path in paths]),
             supports=np.concatenate([path.index[path.supports, 0] for path in paths]),
             heights=self.system.heights,
+            surfaces=surfaces_of(paths),
             rest=rest,
             rest_supports=np.concatenate([path.profile[path.supports, 0] for path in paths]),
         )

@@ -11,6 +11,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.conditions.effect import Effect, TemperatureOverX, WirePart, over_x
 from catenary_fe.layout.conditions.gusts import GustLoads
 from catenary_fe.layout.conditions.ice import Ice, IceMass
+from catenary_fe.layout.conditions.irregularity import ContactWireIrregularity, UnevenSurface
 from catenary_fe.layout.conditions.temperature import Warming
 from catenary_fe.layout.conditions.wind import Drag, Gusts, Wind
 from catenary_fe.layout.errors import InputError
@@ -51,6 +52,8 @@ class Conditions(Parameters):
     """on the wires; unset: still air"""
     ice: Ice | None = None
     """on the wires; unset: none"""
+    irregularity: ContactWireIrregularity | None = None
+    """of the contact wire's running surface, in runs; unset: even"""
     allowed_offset: Positive | None = None
     """[m] of the contact wire from the track's centre, which `cases` judges; unset: any"""
     case: tuple[Case, ...] = ()
@@ -87,6 +90,8 @@ class Conditions(Parameters):
             found.append(Warming(self.temperature, installation_temperature))
         if self.ice:
             found.append(IceMass(self.ice))
+        if self.irregularity:
+            found.append(UnevenSurface(self.irregularity))
         if self.wind:
             found.append(Drag(self.wind, self.ice))
             if self.wind.gusts and self.wind.blows:
@@ -120,6 +125,7 @@ def conditions_schema() -> dict[str, Any]:
 
 __all__ = [
     "Conditions",
+    "ContactWireIrregularity",
     "Effect",
     "Gusts",
     "Ice",

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator
+from pydantic import Field, PlainSerializer, PlainValidator
 
 from catenary_fe.layout.parameters import LARGEST, shorten
 from catenary_fe.layout.parts import Wire
@@ -72,6 +72,11 @@ class Effect:
         found: Floats = part.nothing[0]
         return found
 
+    def irregularity(self, part: WirePart) -> Floats:
+        """[m], shape (places,): by how much a contact wire's running surface lies above its line."""
+        found: Floats = part.nothing[0]
+        return found
+
     def in_time(self, part: WirePart) -> Sequence[tuple[Floats, Signal]]:
         """Loads [N/m], shape (3, places), each with its signal of times [s], shape (times,)."""
         return ()
@@ -111,9 +116,11 @@ def _number(value: Any, least: float, most: float, what: str) -> float:
 
 Table = tuple[tuple[float, float], ...]
 NumberOrTable = float | Table
-OverX = Annotated[NumberOrTable, _over_x(0.0, LARGEST)]
-SpeedOverX = Annotated[NumberOrTable, _over_x(0.0, 100.0)]  # [m/s]
-TemperatureOverX = Annotated[NumberOrTable, _over_x(-100.0, 150.0)]
+_AS_IT_IS = PlainSerializer(lambda value: value, return_type=Any)  # pydantic expects no list of lists
+OverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, LARGEST)]
+SpeedOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, 100.0)]  # [m/s]
+SurfaceOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-0.1, 0.1)]  # [m]
+TemperatureOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-100.0, 150.0)]
 
 
 def over_x(values: NumberOrTable, x: Floats) -> Floats:
