@@ -163,6 +163,8 @@ def _wire(wire: Wire) -> _Record:
         return dict(_plain(wire))
     known = library.wire_record(wire.name)
     own = {n: v for n, v in _fields(wire).items() if v != known.get(n, _default(type(wire), n))}
+    if None in own.values():  # cannot be taken back from the library's
+        return {name: value for name, value in _plain(wire).items() if value is not None}
     return {"library": wire.name} | own
 
 

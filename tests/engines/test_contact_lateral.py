@@ -1,6 +1,7 @@
 """Where the wire lies on the head: recorded by every engine in space, judged against the head's width."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -64,7 +65,7 @@ def test_a_side_load_on_the_wire_shows_on_the_head(shape, pantograph):
         per_length = np.zeros(system.mass_per_length.size)
         per_length[: system.wires[0].x.size - 1] = 0.5
         load = TimeLoad(system.distributed(per_length, axis=1), lambda t: np.sin(2 * np.pi * t) * (t < 0.5))
-        return cf.fe.system.replace(system, time_loads=(load,))
+        return replace(system, time_loads=(load,))
 
     windy, found = shape.with_effect(blown), {}
     for method in ENGINES:

@@ -149,8 +149,8 @@ def test_a_summary_is_in_display_units():
     run = made_run(None, *TWO, start=(5.0, 4.0), support_uplift=uplift, wall_s=0.5, speed=200 / 3.6)
     summary = run.summary("zero-phase")
     assert list(summary) == [
-        "speed_kmh", "method", "evaluated_spans", "dropper_lengths_given", "filter", "pantographs",
-        "governing_pantograph", "max_support_uplift_mm", "support_uplift_mm",
+        "speed_kmh", "method", "conditions", "evaluated_spans", "dropper_lengths_given", "filter",
+        "pantographs", "governing_pantograph", "max_support_uplift_mm", "support_uplift_mm",
         "largest_contact_lateral_mm", "contact_lateral_mm", "slack_droppers",
         "largest_dropper_force_N", "elasticity_non_uniformity_percent", "simulated_s", "wall_s",
         "real_time_factor", "checks", "checks_failed", "warnings",
