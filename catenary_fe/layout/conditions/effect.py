@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PlainSerializer, PlainValidator
+from pydantic import PlainSerializer, PlainValidator, WithJsonSchema
 
 from catenary_fe.layout.parameters import LARGEST, shorten
 from catenary_fe.layout.parts import Wire
@@ -102,8 +102,14 @@ def _over_x(least: float, most: float) -> PlainValidator:
             found.append((x, _number(pair[1], least, most, f"entry {n}: value ")))
         return tuple(found)
 
-    value = Annotated[float, Field(ge=least, le=most)]
-    return PlainValidator(check, json_schema_input_type=value | list[tuple[float, value]])
+    return PlainValidator(check)
+
+
+def _schema(least: float, most: float) -> WithJsonSchema:
+    """What an editor checks of it."""
+    number = {"type": "number", "minimum": least, "maximum": most}
+    pair = {"type": "array", "prefixItems": [{"type": "number"}, number], "minItems": 2, "maxItems": 2}
+    return WithJsonSchema({"anyOf": [number, {"type": "array", "items": pair}]})
 
 
 def _number(value: Any, least: float, most: float, what: str) -> float:
@@ -117,10 +123,10 @@ def _number(value: Any, least: float, most: float, what: str) -> float:
 Table = tuple[tuple[float, float], ...]
 NumberOrTable = float | Table
 _AS_IT_IS = PlainSerializer(lambda value: value, return_type=Any)  # pydantic expects no list of lists
-OverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, LARGEST)]
-SpeedOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, 100.0)]  # [m/s]
-SurfaceOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-0.1, 0.1)]  # [m]
-TemperatureOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-100.0, 150.0)]
+OverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, LARGEST), _schema(0.0, LARGEST)]
+SpeedOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, 100.0), _schema(0.0, 100.0)]  # [m/s]
+SurfaceOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-0.1, 0.1), _schema(-0.1, 0.1)]  # [m]
+TemperatureOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-100.0, 150.0), _schema(-100.0, 150.0)]
 
 
 def over_x(values: NumberOrTable, x: Floats) -> Floats:
