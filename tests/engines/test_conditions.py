@@ -24,7 +24,7 @@ def head() -> cf.Pantograph:
 @pytest.fixture(scope="module")
 def shape() -> cf.Shape:
     line = cf.load_catenary(LAYOUTS / "re330.toml")
-    return cf.find_form(line.replace(spans=line.spans[:6], supports=line.supports[:7], evaluated_spans=None))
+    return cf.find_form(line.replace(spans=line.spans[:4], supports=line.supports[:5], evaluated_spans=None))
 
 
 @pytest.fixture(scope="module")

@@ -103,13 +103,13 @@ def test_the_same_seed_the_same_gusts(span: cf.Shape) -> None:
 
 def test_engines_agree_in_gusts() -> None:
     line = cf.load_catenary(LAYOUTS / "re330.toml")
-    shape = cf.find_form(line.replace(spans=line.spans[:5], supports=line.supports[:6], evaluated_spans=None))
+    shape = cf.find_form(line.replace(spans=line.spans[:3], supports=line.supports[:4], evaluated_spans=None))
     head, gusty = cf.library.pantograph("DSA380"), cf.Conditions(name="gusty", wind=wind())
     run = cf.simulate(shape, [head], speed=70.0, conditions=gusty)
     inside, sigma = run.window(0), run.contact_force_statistics()[0].std
     steady = cf.simulate(shape, [head], speed=70.0, conditions=cf.Conditions(wind=cf.Wind(speed=U)))
     gap = steady.filtered_contact_force()[0] - run.filtered_contact_force()[0]
-    assert np.sqrt((gap[inside] ** 2).mean()) > 0.05 * sigma  # gusts do something
+    assert np.sqrt((gap[inside] ** 2).mean()) > 0.04 * sigma  # gusts do something
     assert np.abs(run.missing_energy).max() < 2e-3 * np.abs(run.data["lost_work"].values).max()
     for method in ("linearised", "exudyn"):
         other = cf.simulate(shape, [head], speed=70.0, method=method, conditions=gusty)
