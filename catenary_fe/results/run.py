@@ -79,8 +79,7 @@ class Run:
     @property
     def pantographs(self) -> tuple[AnyPantograph, ...]:
         """The pantographs that ran, in the order of the data."""
-        records = json.loads(self.data.attrs["pantographs"])
-        return tuple(recorded_pantograph(record) for record in records)
+        return tuple(map(recorded_pantograph, json.loads(self.data.attrs["pantographs"])))
 
     @property
     def evaluated_spans(self) -> tuple[int, ...]:
@@ -115,8 +114,8 @@ class Run:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the program warned of before the run, and the checks that it failed."""
-        failed = [f"{FAILED}{check}" for check in self.checks if not check.passed]
         partial = [str(self.partial)] if self.partial else []
+        failed = (f"{FAILED}{check}" for check in self.checks if not check.passed)
         return (*partial, *json.loads(self.data.attrs["warnings"]), *failed)
 
     @property
@@ -140,8 +139,8 @@ class Run:
             return None
         uplift, x = self.data["elasticity_uplift"], np.asarray(self.data["elasticity_position"].values)
         supports = np.asarray(self.data["support_position"].values)
-        inside = supports[(supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)]
-        return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), inside)
+        inside = (supports >= x[0] - 1e-9) & (supports <= x[-1] + 1e-9)
+        return Elasticity(x, np.asarray(uplift.values), float(uplift.attrs["force"]), supports[inside])
 
     def with_elasticity(self, curve: Elasticity) -> Run:
         """The run with the line's elasticity added to its data, where report and criteria read it."""
@@ -166,8 +165,7 @@ class Run:
         supports = np.asarray(self.data["support_position"].values)
         x = np.asarray(self.data["position"].values[pantograph])
         inside = np.zeros(x.size, dtype=bool)
-        numbers = self._numbers(spans)
-        for number in numbers:
+        for number in (numbers := self._numbers(spans)):
             inside |= (x >= supports[number - 1]) & (x <= supports[number])
         if not inside.any():
             raise InputError(f"pantograph {pantograph + 1} was never inside spans {list(numbers)}")
@@ -373,9 +371,7 @@ def load_run(path: str | Path) -> Run:
     """
     import xarray as xr
 
-    path = Path(path)
-    if path.is_dir():
-        path /= "run.nc"
+    path = Path(path) / "run.nc" if Path(path).is_dir() else Path(path)
     try:
         with xr.open_dataset(path, engine="scipy") as opened:
             data = opened.load()
@@ -395,7 +391,7 @@ def load_run(path: str | Path) -> Run:
         )
     run = Run(data)
     try:
-        _ = run.catenary, run.pantographs, run.evaluated_spans, run.speed, run.method
+        _ = run.catenary, run.conditions, run.pantographs, run.evaluated_spans, run.speed, run.method
         settings, warnings = (json.loads(data.attrs[name]) for name in ("settings", "warnings"))
         _ = dict(settings["mesh"]), dict(settings["time"]), list(warnings)
     except (KeyError, TypeError, ValueError):

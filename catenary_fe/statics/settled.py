@@ -28,9 +28,9 @@ def settle(shape: Shape, conditions: Conditions | Sequence[Effect]) -> Shape:
     """The line at rest under conditions: same droppers, same devices, other places and tensions.
 
     What :func:`find_form` found is hung at the temperature of installation, in still air. Weights keep their
-    pull and travel; wires between fixed ends change their tension. Cantilevers swing with the messenger wire
-    and take the steady arms' pivots along. Modes, statics and runs of every engine start from what this
-    returns.
+    pull and travel; wires between fixed ends change their tension. Cantilevers swing with the messenger wire;
+    the pivot of a steady arm goes along with its contact wire. Modes and runs of every engine start from what
+    this returns.
 
     conditions : or effects, a script's own among them (:class:`catenary_fe.layout.conditions.Effect`)
 
@@ -88,7 +88,8 @@ def _at_rest(system: System, catenary: Catenary) -> tuple[System, Floats]:
 class _Cantilever:
     """A cantilever and what it carries.
 
-    along, across : numbers of the messenger wire's coordinates on it; across is FIXED in the plane
+    along, across : numbers of the coordinates on it of the messenger wire, where there is none of the contact
+        wire; across is FIXED in the plane and without a messenger wire
     arms : numbers of the links whose pivots it carries
     below : numbers of the contact wires' coordinates along the track, on these links
     mast : [m] to the left of the track's centre, or None
@@ -105,17 +106,16 @@ def _cantilevers(system: System, catenary: Catenary) -> list[_Cantilever]:
     """Those between the ends of each section: a section's ends are anchored."""
     sections = catenary.sections if isinstance(catenary, Line) else (catenary,)
     width, found = 2 * system.axes, []
-    for wire in system.wires:
-        if wire.kind != "messenger_wire":
-            continue
-        contact = [w for w in system.wires if w.contact and w.section == wire.section]
-        for number, support in list(enumerate(sections[wire.section].supports))[1:-1]:
-            along = width * (wire.first + int(wire.supports[number]))
-            points = [width * (w.first + int(w.supports[number])) for w in contact]
-            arms = np.flatnonzero(np.isin(system.arms.first, points))
+    for section, line in enumerate(sections):
+        mine = [wire for wire in system.wires if wire.section == section and wire.supports.size]
+        contact = [wire for wire in mine if wire.contact]
+        above = [wire for wire in mine if not wire.contact]
+        for number, support in list(enumerate(line.supports))[1:-1]:
+            along = [width * (w.first + int(w.supports[number])) for w in (*above, *contact)]
+            arms = np.flatnonzero(np.isin(system.arms.first, along[len(above) :]))
             below = tuple(system.arms.first[arms].tolist())
-            across = along + 1 if system.spatial else FIXED
-            found.append(_Cantilever(along, across, tuple(arms.tolist()), below, support.mast_position))
+            across = along[0] + 1 if above and system.spatial else FIXED
+            found.append(_Cantilever(along[0], across, tuple(arms.tolist()), below, support.mast_position))
     return found
 
 

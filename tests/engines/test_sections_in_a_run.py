@@ -110,9 +110,14 @@ def test_rows_are_filled_up_to_fours() -> None:
 
 
 def test_what_is_not_computed_is_held() -> None:
-    computed = Computed(3)
+    computed = Computed(4)
     computed.add((0, 2), 0, 3)
-    computed.add((1, 2), 3, 5)
-    values = np.array([[1.0, 2, 3, 4, 0, 0], [1.0, 2, 3, 4, 5, 6], [7.0, 0, 0, 0, 0, 0]])
-    computed.hold(values, np.array([0, 1, 2]), np.arange(6))
-    assert values.tolist() == [[1, 2, 3, 4, 4, 4], [1, 2, 3, 4, 5, 6], [7, 7, 7, 7, 7, 7]]
+    computed.add((1, 2), 3, 4)
+    computed.add((1, 4), 4, 5)
+    computed.steps[2] = 0  # never
+    values = np.array(
+        [[1.0, 2, 3, 4, 0, 0], [1.0, 2, 3, 4, 5, 6], [7.0, 0, 0, 0, 0, 0], [9.0, 0, 0, 0, 0, 6]]
+    )
+    computed.hold(values, np.arange(4), np.arange(6))
+    held = [[1, 2, 3, 4, 4, 4], [1, 2, 3, 4, 5, 6], [7, 7, 7, 7, 7, 7], [9, 9, 9, 9, 9, 6]]
+    assert values.tolist() == held

@@ -92,6 +92,26 @@ def test_compensated_wires_move_and_keep_their_tension(stitched: cf.Shape) -> No
     assert [s.cantilever_rotation_deg for s in inner] == pytest.approx(by_hand, rel=3e-3)
 
 
+def test_droppers_lengthen_as_their_wires(stitched: cf.Shape) -> None:
+    hot = cf.settle(stitched, cf.Conditions(temperature=65.0)).system.droppers
+    assert hot.length == pytest.approx(stitched.system.droppers.length * (1 + ALPHA * 50.0), rel=1e-12)
+
+
+def test_arms_without_a_messenger_wire_go_along_with_the_contact_wire() -> None:
+    """Else the links would lean along the track, and hold the wire back."""
+    arm = cf.SteadyArm(length=1.2, clamp_mass=0.2)
+    wire = cf.library.wire("AC-107", tension=8e3)
+    line = cf.Catenary(
+        contact_wire=wire,
+        spans=[cf.Span(length=30.0, droppers=())] * 6,
+        supports=[cf.Support(steady_arm=arm, stagger=0.3 * (-1) ** i) for i in range(7)],
+    )
+    settled = cf.settle(cf.find_form(line), cf.Conditions(temperature=45.0))
+    assert np.abs(settled.system.arms.span(settled.system.reference)[:, 0]).max() < 1e-5
+    moved = [s.cantilever_shift_mm for s in cf.case_rows(settled).supports[1:-1]]
+    assert moved == pytest.approx([1e3 * ALPHA * 30.0 * 30.0 * n for n in range(1, 6)], rel=0.02)
+
+
 def test_cantilevers_draw_the_wires_as_they_swing(stitched: cf.Shape) -> None:
     """By R − √(R² − s²), R from the hinge to the arm's pivot; without a mast's place it is not drawn."""
     line = stitched.catenary
