@@ -61,3 +61,12 @@ def twin_wires_shape(reference_layout: Path) -> cf.Shape:
     """Three spans of a line with two contact wires and 45 droppers."""
     line = cf.load_catenary(reference_layout.with_name("dc_3kv_twin.toml"))
     return cf.find_form(line.replace(spans=line.spans[:3], supports=line.supports[:4], evaluated_spans=(2,)))
+
+
+def refused_in_one_line(call, message):
+    """Of the theory: what = value: rule; remedy."""
+    with pytest.raises(ValueError, match=message) as caught:
+        call()
+    text = str(caught.value)
+    assert "\n" not in text
+    assert " = " in text and ": " in text and "; " in text
