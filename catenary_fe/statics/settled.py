@@ -20,6 +20,7 @@ from catenary_fe.statics.shape import HangingWire, Settlement, Shape
 
 Floats = NDArray[np.float64]
 _PASSES = 30
+_STEPS = 10  # of the load, where it is too much at once
 _STILL = 1e-6  # [m] by which cantilevers may still swing
 
 
@@ -41,7 +42,7 @@ def settle(shape: Shape, conditions: Conditions | Sequence[Effect]) -> Shape:
         raise InputError("settle: the shape is already under conditions; begin with what find_form returned")
     given, effects = _taken(conditions, shape.catenary.installation_temperature)
     outside = surrounded(shape.system, effects)
-    system, moved = _at_rest(outside, shape.catenary)
+    system, moved = _at_rest(shape.system, outside, shape.catenary)
     springs = system.force - outside.force - system.ground_stiffness * moved
     return _shape(shape, system, Settlement(shape, given, moved, springs))
 
@@ -64,13 +65,29 @@ def _taken(
     return None, list(conditions)
 
 
-def _at_rest(system: System, catenary: Catenary) -> tuple[System, Floats]:
+def _gradually(before: System, system: System) -> tuple[Floats, Floats | None]:
+    """As `solve_loaded`, with loads and lengths that come step by step: arms swing far, or turn over."""
+    moved, left = np.zeros(system.dof.size), None
+    strain = before.cables.rest_strain
+    for share in np.linspace(0, 1, _STEPS + 1)[1:].tolist():
+        part = replace(
+            system,
+            force=before.force + share * (system.force - before.force),
+            cables=replace(system.cables, rest_strain=strain + share * (system.cables.rest_strain - strain)),
+        )
+        moved, left = solve_loaded(part, np.zeros(moved.size), moved)
+    return moved, left
+
+
+def _at_rest(hung: System, system: System, catenary: Catenary) -> tuple[System, Floats]:
     """The line with its cantilevers where the wires take them, and displacements, shape (all,)."""
     cantilevers = _cantilevers(system, catenary)
     swung, moved = system, np.zeros(system.dof.size)
     before = np.full(moved.size, np.inf)
     for _ in range(_PASSES):
         moved, left = solve_loaded(swung, np.zeros(moved.size), moved)
+        if left is not None:
+            moved, left = _gradually(hung, swung)
         if left is not None:
             worst = int(np.abs(left).argmax())
             raise SolverError(

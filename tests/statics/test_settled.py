@@ -225,6 +225,15 @@ def test_a_settled_line_is_at_rest_where_it_is(stitched: cf.Shape) -> None:
         cf.case_rows(stitched)
 
 
+def test_ice_and_wind_that_swing_the_arms_far() -> None:
+    """At once too much for Newton's method: arms are pulled with next to nothing, and swing down."""
+    weather = cf.Conditions(
+        temperature=-5.0, ice=cf.Ice(load=7.5), wind=cf.Wind(speed=15.0, direction=-90.0, span_factor=0.75)
+    )
+    system = cf.settle(cf.find_form(section("re330", 20)), weather).system
+    assert np.abs(system.gather(system.out_of_balance(np.zeros(system.dof.size)))).max() < 1e-2
+
+
 def _held(case: object) -> tuple[float, float]:
     """[N] up and to the left on all wires."""
     each = [support.forces_N for support in case.supports]
