@@ -18,10 +18,12 @@ if TYPE_CHECKING:
     )
     from catenary_fe.layout import (
         AerodynamicForce,
+        AsBuilt,
         Catenary,
         CatenaryError,
         Conditions,
         ContactWireIrregularity,
+        Drawn,
         Dropper,
         Effect,
         ElasticPantograph,
@@ -129,6 +131,8 @@ _ROOMS = {
     "studies.simulate": ("simulate",),
     "layout": (
         "AerodynamicForce",
+        "AsBuilt",
+        "Drawn",
         "Catenary",
         "CatenaryError",
         "Conditions",
@@ -175,11 +179,13 @@ _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
 __all__ = [
     "AerodynamicForce",
+    "AsBuilt",
     "Catenary",
     "CatenaryError",
     "Conditions",
     "ContactWireIrregularity",
     "Criterion",
+    "Drawn",
     "Dropper",
     "Effect",
     "ElasticPantograph",

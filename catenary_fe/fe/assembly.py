@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import Cables, mass_blocks, scattered
-from catenary_fe.fe.contact import BaseLine
+from catenary_fe.fe.contact import BaseLine, Irregularity, surface_places
 from catenary_fe.fe.installation import (
     Installation,
     WireLine,
@@ -26,8 +26,10 @@ from catenary_fe.fe.mesh import Mesh
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System, WireNodes
 from catenary_fe.fe.track import cant_forces, leaning_weights
-from catenary_fe.layout import GRAVITY, Catenary
+from catenary_fe.layout import GRAVITY, Catenary, Wire
+from catenary_fe.layout.conditions.effect import outer_diameter
 from catenary_fe.layout.equipment import stations
+from catenary_fe.layout.installed import worn_surface
 from catenary_fe.layout.terminations import midpoint_place
 
 Floats = NDArray[np.float64]
@@ -85,9 +87,7 @@ def assemble(catenary: Catenary, mesh: Mesh, installation: Installation) -> Syst
         beta=float(catenary.damping.beta),
         wires=_wires(catenary, mesh),
         contact_wire_height=catenary.contact_wire_height,
-        base_line=BaseLine(
-            catenary.support_positions, catenary.contact_wire_heights - catenary.contact_wire_height
-        ),
+        base_line=BaseLine(catenary.support_positions, catenary.drawn_heights - catenary.contact_wire_height),
     )
 
 
@@ -111,11 +111,18 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
                 supports=wire.supports,
                 clamps=fixed,
                 tension=pull,
+                irregularity=_worn(catenary, n, kinds[n], wire.x) if contact else None,
                 kind="stitch_wire" if n >= mesh.first_stitch else wire_field(mesh, n),
                 wire=kinds[n],
             )
         )
     return tuple(found)
+
+
+def _worn(catenary: Catenary, number: int, wire: Wire, x: Floats) -> Irregularity | None:
+    """The running surface that wear has left of a contact wire with nodes at x [m]."""
+    places = surface_places(x)
+    return Irregularity.through(places, worn_surface(catenary, number, outer_diameter(wire), places))
 
 
 def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:

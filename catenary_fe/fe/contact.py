@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,16 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+_SURFACE = 0.05  # [m] between places of a running surface: ten of them in the shortest wave that matters
+
+
+def surface_places(x: Floats) -> Floats:
+    """[m] along a wire with nodes at x [m], where its running surface is given."""
+    count = int(np.ceil((x[-1] - x[0]) / _SURFACE - 1e-6)) + 1
+    places: Floats = x[0] + _SURFACE * np.arange(count)
+    return places
+
+
 @dataclass(frozen=True)
 class Irregularity:
     """By how much the running surface of a contact wire lies above its axis line, over the place.
@@ -29,6 +39,24 @@ class Irregularity:
     first: float
     step: float
     values: Floats
+
+    @classmethod
+    def through(cls, x: Floats, heights: Floats) -> Irregularity | None:
+        """A smooth surface through heights [m] at even places [m]; None of an even surface."""
+        from scipy.interpolate import CubicSpline
+
+        if not heights.any():
+            return None
+        values = np.column_stack([heights, CubicSpline(x, heights)(x, 1)])
+        return cls(float(x[0]), float(x[1] - x[0]), values)
+
+    def over(self, other: Irregularity | None) -> Irregularity:
+        """This one on top of another at the same places."""
+        return replace(self, values=self.values + other.values) if other else self
+
+    def moved(self, along: float) -> Irregularity:
+        """The same further along the track by so many metres."""
+        return replace(self, first=self.first + along)
 
     @cached_property
     def _curve(self) -> Any:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from catenary_fe.fe.equipment import add_to_elements, lumped, wear_elements
 from catenary_fe.fe.mesh import Mesh
 from catenary_fe.layout import GRAVITY, Catenary, Wire
+from catenary_fe.layout.as_built import tension_ratio
 from catenary_fe.layout.terminations import WireField, tension_shares
 from catenary_fe.layout.track import curvatures, lean
 
@@ -213,7 +214,12 @@ def _weights(catenary: Catenary, mesh: Mesh) -> list[tuple[int, float]]:
         name = wire_field(mesh, number)
         for node, end in ((0, catenary.begin), (mesh.wires[number].x.size - 1, catenary.end)):
             if ratio := end.of(name).ratio:
-                found.append((int(mesh.first_nodes[number]) + node, ratio * kind.tension / GRAVITY))
+                found.append(
+                    (
+                        int(mesh.first_nodes[number]) + node,
+                        ratio * tension_ratio(catenary, name) * kind.tension / GRAVITY,
+                    )
+                )
     return found
 
 

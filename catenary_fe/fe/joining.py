@@ -181,7 +181,16 @@ class Joint:
 
     def _wire_nodes(self, parts: Sequence[System], width: int) -> tuple[WireNodes, ...]:
         named = [
-            [replace(w, name=f"section {n}: {w.name}", x=w.x + begin, section=n - 1) for w in part.wires]
+            [
+                replace(
+                    wire,
+                    name=f"section {n}: {wire.name}",
+                    x=wire.x + begin,
+                    section=n - 1,
+                    irregularity=wire.irregularity and wire.irregularity.moved(float(begin)),
+                )
+                for wire in part.wires
+            ]
             for n, (part, begin) in enumerate(zip(parts, self.begins, strict=True), start=1)
         ]
         found, first = [], 0

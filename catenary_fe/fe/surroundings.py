@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from catenary_fe.fe.cable import scattered
-from catenary_fe.fe.contact import Irregularity
+from catenary_fe.fe.contact import Irregularity, surface_places
 from catenary_fe.fe.spring import Springs
 from catenary_fe.fe.system import System, TimeLoad, WireNodes
 from catenary_fe.layout import GRAVITY, InputError
 from catenary_fe.layout.conditions import Effect, WirePart
 
 Floats = NDArray[np.float64]
-_SURFACE = 0.05  # [m] between places of a running surface: ten of them in the shortest wave that matters
 _ACROSS = 1  # of the three rows of an effect: along the track, to the left, up
 
 
@@ -92,15 +90,9 @@ def _with_surface(wire: WireNodes, effect: Effect) -> WireNodes:
     if not wire.contact:
         return wire
     assert wire.wire is not None
-    x = np.arange(wire.x[0], wire.x[-1] + _SURFACE, _SURFACE)
-    heights = effect.irregularity(WirePart(wire.kind, wire.wire, x))
-    if not heights.any():
-        return wire
-    values = np.column_stack([heights, CubicSpline(x, heights)(x, 1)])
-    before = wire.irregularity
-    if before:
-        values += before.values
-    return replace(wire, irregularity=Irregularity(float(x[0]), _SURFACE, values))
+    x = surface_places(wire.x)
+    surface = Irregularity.through(x, effect.irregularity(WirePart(wire.kind, wire.wire, x)))
+    return replace(wire, irregularity=surface.over(wire.irregularity)) if surface else wire
 
 
 def _lengthened(system: System, effect: Effect) -> Springs:

@@ -1,6 +1,7 @@
 """What an engineer writes down: wires, droppers, supports, spans, pantographs; files and the library."""
 
 from catenary_fe.layout import library
+from catenary_fe.layout.as_built import AsBuilt, Drawn
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.conditions import (
@@ -53,12 +54,14 @@ __all__ = [
     "GRAVITY",
     "AerodynamicForce",
     "AnyPantograph",
+    "AsBuilt",
     "AttachedPantograph",
     "Catenary",
     "CatenaryError",
     "Conditions",
     "ContactWireIrregularity",
     "DescribedPantograph",
+    "Drawn",
     "Dropper",
     "Effect",
     "ElasticPantograph",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from functools import cached_property, wraps
 from numbers import Integral, Real
 from typing import Any, ParamSpec, TypeVar
 
@@ -19,6 +19,18 @@ Floats = NDArray[np.float64]
 _ROUNDED = 1e-6  # [m] by which positions may lie beyond a wire's end
 _Given = ParamSpec("_Given")
 _Result = TypeVar("_Result")
+
+
+def fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
+    """A property that is computed once, an array that nobody can change in place."""
+
+    @wraps(function)
+    def compute(owner: Any) -> NDArray[Any]:
+        array = function(owner)
+        array.setflags(write=False)
+        return array
+
+    return cached_property(compute)
 
 
 def number(

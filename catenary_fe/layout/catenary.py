@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import cached_property, wraps
+from collections.abc import Sequence
+from functools import cached_property
 from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
-from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.arguments import checked, fixed_array, number, numbers, whole
+from catenary_fe.layout.as_built import AsBuilt, as_built_faults, deviations
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.images import in_the_plane, mirror_image
@@ -31,18 +32,6 @@ from catenary_fe.layout.terminations import Loss, lateral_pulls
 from catenary_fe.layout.track import messenger_staggers
 
 SAME_PLACE = 1e-3  # [m] of masts
-
-
-def _fixed_array(function: Callable[[Any], NDArray[Any]]) -> cached_property[NDArray[Any]]:
-    """A property that is computed once, an array that nobody can change in place."""
-
-    @wraps(function)
-    def compute(catenary: Any) -> NDArray[Any]:
-        array = function(catenary)
-        array.setflags(write=False)
-        return array
-
-    return cached_property(compute)
 
 
 class RayleighDamping(Parameters):
@@ -105,6 +94,8 @@ class Catenary(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    as_built: AsBuilt | None = None
+    """by how much the line differs from its drawing; unset: not at all"""
     installation_temperature: Temperature = 15.0
     """[°C] at which the line hangs as designed; what is warmer or colder, conditions say"""
     cant_base: Positive = 1.5
@@ -123,7 +114,7 @@ class Catenary(Parameters):
                 f"{counted(len(self.supports), 'support')} for {counted(len(self.spans), 'span')}: there must"
                 " be one more support than spans"
             )
-        refuse(catenary_faults(self))
+        refuse([*catenary_faults(self), *as_built_faults(self)])
         return self
 
     @classmethod
@@ -173,7 +164,7 @@ class Catenary(Parameters):
             **others,
         )
 
-    @_fixed_array
+    @fixed_array
     def support_positions(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,)."""
         return np.concatenate([[0.0], np.cumsum([span.length for span in self.spans])])
@@ -187,7 +178,7 @@ class Catenary(Parameters):
         """[m] from the first to the last support."""
         return float(self.support_positions[-1])
 
-    @_fixed_array
+    @fixed_array
     def hanging(self) -> NDArray[np.bool_]:
         """Shape (designed droppers,): which droppers hang; others are missing or broken."""
         return np.array([d.state is None for span in self.spans for d in span.droppers], dtype=bool)
@@ -197,28 +188,33 @@ class Catenary(Parameters):
         """All droppers of the line that hang, in order."""
         return tuple(dropper for span in self.spans for dropper in span.droppers if dropper.state is None)
 
-    @_fixed_array
+    @fixed_array
     def dropper_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line; where a clamp has slid, of the upper end."""
-        starts = np.repeat(self.support_positions[:-1], [len(span.droppers) for span in self.spans])
-        positions = starts + np.array([d.position for span in self.spans for d in span.droppers])
-        found: NDArray[np.float64] = positions[self.hanging]
+        found: NDArray[np.float64] = self.designed_positions[self.hanging]
         return found
 
-    @_fixed_array
+    @fixed_array
+    def designed_positions(self) -> NDArray[np.float64]:
+        """[m], shape (designed droppers,), along the line, of those too that are gone."""
+        starts = np.repeat(self.support_positions[:-1], [len(span.droppers) for span in self.spans])
+        found: NDArray[np.float64] = starts + [d.position for span in self.spans for d in span.droppers]
+        return found
+
+    @fixed_array
     def lower_clamp_positions(self) -> NDArray[np.float64]:
         """[m], shape (droppers,), along the line, of their clamps on the contact wire."""
         low: NDArray[np.float64] = self.dropper_positions + [d.clamp_shift for d in self.droppers]
         return low
 
-    @_fixed_array
+    @fixed_array
     def dropper_spans(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the span, from 1, that each dropper is in."""
         spans = [i for i, s in enumerate(self.spans, start=1) for _ in s.droppers]
         found: NDArray[np.int64] = np.array(spans, dtype=np.int64)[self.hanging]
         return found
 
-    @_fixed_array
+    @fixed_array
     def dropper_numbers(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of each dropper in its span, from 1, as designed: missing ones count."""
         numbers = [n for span in self.spans for n in range(1, len(span.droppers) + 1)]
@@ -227,12 +223,13 @@ class Catenary(Parameters):
 
     @property
     def departs_from_design(self) -> bool:
-        """Whether droppers are gone, clamps have slid or the contact wire has worn."""
+        """Whether droppers are gone, clamps have slid, the contact wire has worn, or was hung otherwise."""
         return bool(changes_of(self))
 
     def as_designed(self) -> Self:
-        """The same line with all droppers and clamps in place and a new contact wire."""
-        return self.replace(spans=designed_spans(self), wear=()) if self.departs_from_design else self
+        """The same line as drawn: all droppers and clamps in place, a new contact wire, no deviations."""
+        drawn: dict[str, Any] = {"spans": designed_spans(self), "wear": (), "as_built": None}
+        return self.replace(**drawn) if self.departs_from_design else self
 
     @property
     def gives_dropper_lengths(self) -> bool:
@@ -260,47 +257,53 @@ class Catenary(Parameters):
         )
         return self.replace(spans=spans)
 
-    @_fixed_array
+    @fixed_array
     def contact_wire_heights(self) -> NDArray[np.float64]:
+        """[m], shape (spans + 1,): height of the contact wire at the supports, as built."""
+        off = deviations(self, "contact_wire_height", self.support_positions)
+        return self.drawn_heights + off
+
+    @fixed_array
+    def drawn_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): design height of the contact wire at the supports."""
         return np.array([s.contact_wire_height or self.contact_wire_height for s in self.supports])
 
     @property
     def changes_height(self) -> bool:
         """Whether the contact wire's design height is another one at some supports."""
-        return bool(
-            np.ptp(self.contact_wire_heights) or self.contact_wire_heights[0] != self.contact_wire_height
-        )
+        return bool(np.ptp(self.drawn_heights) or self.drawn_heights[0] != self.contact_wire_height)
 
     def design_line(self, x: ArrayLike) -> NDArray[np.float64]:
         """[m] above the rail, at places x [m] along the line: straight between the supports' heights."""
         at = np.asarray(x, dtype=float)
-        line: NDArray[np.float64] = np.interp(at, self.support_positions, self.contact_wire_heights)
+        line: NDArray[np.float64] = np.interp(at, self.support_positions, self.drawn_heights)
         return line
 
-    @_fixed_array
+    @fixed_array
     def gradients(self) -> NDArray[np.float64]:
         """Shape (spans,): design gradient of the contact wire in each span."""
-        gradients: NDArray[np.float64] = np.diff(self.contact_wire_heights) / np.diff(self.support_positions)
+        gradients: NDArray[np.float64] = np.diff(self.drawn_heights) / np.diff(self.support_positions)
         return gradients
 
-    @_fixed_array
+    @fixed_array
     def design_heights(self) -> NDArray[np.float64]:
-        """[m], shape (droppers,): height of the contact wire that form finding gives each dropper."""
+        """[m], shape (droppers,): design height of the contact wire at each dropper."""
         offsets = np.concatenate([s.height_offsets() for s in self.spans])
         heights: NDArray[np.float64] = self.design_line(self.dropper_positions) + offsets[self.hanging]
         return heights
 
-    @_fixed_array
+    @fixed_array
     def messenger_support_heights(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): height of the installed messenger wire at the supports.
 
         Without one, of the contact wire.
         """
-        heights = [s.system_height or self.system_height for s in self.supports]
         if self.messenger_wire is None:
             return self.contact_wire_heights
-        above: NDArray[np.float64] = self.contact_wire_heights + np.array(heights)
+        heights = self.drawn_heights + [s.system_height or self.system_height for s in self.supports]
+        above: NDArray[np.float64] = heights + deviations(
+            self, "messenger_wire_height", self.support_positions
+        )
         return above
 
     @property
@@ -322,7 +325,7 @@ class Catenary(Parameters):
         half = (self.contact_wire_spacing or 0.0) / 2
         return (-half, half) if half else (0.0,)
 
-    @_fixed_array
+    @fixed_array
     def dropper_contact_wires(self) -> NDArray[np.int64]:
         """Shape (droppers,): number of the contact wire, from 0, that each dropper holds."""
         found: NDArray[np.int64] = np.array(self.wires_held(), dtype=np.int64)[self.hanging]
@@ -344,24 +347,25 @@ class Catenary(Parameters):
         """Numbers of the supports, from 0, that have a stitch wire."""
         return tuple(i for i in range(len(self.supports)) if self.has_stitch_wire(i))
 
-    @_fixed_array
+    @fixed_array
     def stitch_wire_lengths(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): of the stitch wires at the supports; 0 where none hangs."""
         usual = self.stitch_wire.length if self.stitch_wire else 0.0
         own = [s.stitch_wire_length or usual for s in self.supports]
         return np.array([each if self.has_stitch_wire(i) else 0.0 for i, each in enumerate(own)])
 
-    @_fixed_array
+    @fixed_array
     def staggers(self) -> NDArray[np.float64]:
-        """[m], shape (spans + 1,): stagger of the contact wire at the supports."""
-        return np.array([support.stagger for support in self.supports])
+        """[m], shape (spans + 1,): stagger of the contact wire at the supports, as built."""
+        drawn = np.array([support.stagger for support in self.supports])
+        return drawn + deviations(self, "stagger", self.support_positions)
 
-    @_fixed_array
+    @fixed_array
     def messenger_staggers(self) -> NDArray[np.float64]:
         """[m], shape (spans + 1,): likewise of the messenger wire; of one that follows, where that is."""
         return messenger_staggers(self)
 
-    @_fixed_array
+    @fixed_array
     def lateral_pulls(self) -> NDArray[np.float64]:
         """[N], shape (spans + 1,): force to the left with which stagger, curves, cant pull on the supports.
 

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.as_built import AsBuilt
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.entries import (
     DropperDefaults,
@@ -72,6 +73,8 @@ class SectionEntry(Parameters):
     """within the section's spans; that of other sections is not repeated"""
     wear: tuple[Wear, ...] = ()
     """of the section's contact wire; that of other sections is not repeated"""
+    as_built: AsBuilt | None = None
+    """by how much the section differs from its drawing; that of other sections is not repeated"""
     overlap: Overlap | None = None
     """with the section before; unset: as the layout's `overlap`"""
     count: Annotated[int, Field(strict=True, ge=1, le=1000)] = 1
@@ -79,7 +82,7 @@ class SectionEntry(Parameters):
 
     def beside(self, first: LayoutFile) -> LayoutFile:
         """The layout of this section by itself."""
-        own = (self.model_fields_set | {"equipment", "wear"}) - {"overlap", "count"}
+        own = (self.model_fields_set | {"equipment", "wear", "as_built"}) - {"overlap", "count"}
         midpoints = {"midpoint", "midpoint_position"}
         others = dict.fromkeys(midpoints - own) if midpoints & own else {}
         return first.replace(
@@ -140,6 +143,8 @@ class LayoutFile(Parameters):
     """within the spans: section insulators, neutral sections, clamps"""
     wear: tuple[Wear, ...] = ()
     """of the contact wire, since its droppers were cut"""
+    as_built: AsBuilt | None = None
+    """by how much the line differs from its drawing; unset: not at all"""
     installation_temperature: Temperature = 15.0
     """[°C] at which the line hangs as designed; what is warmer or colder, conditions say"""
     cant_base: Positive = 1.5

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import tan
 from typing import TYPE_CHECKING, TypeVar
 
+from catenary_fe.layout.as_built import mirrored
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import GRAVITY
 from catenary_fe.layout.parts import Span, SteadyArm
@@ -32,7 +33,8 @@ def in_the_plane(catenary: _Line) -> _Line:
         if supports[end].steady_arm and supports[beside].steady_arm:
             supports[end] = supports[end].replace(steady_arm=supports[beside].steady_arm)
     spans = tuple(span.replace(curve_radius=None, curve_radius_end=None) for span in catenary.spans)
-    return catenary.replace(spans=spans, supports=tuple(supports), spatial=False)
+    built = catenary.as_built and catenary.as_built.replace(stagger=None)
+    return catenary.replace(spans=spans, supports=tuple(supports), as_built=built, spatial=False)
 
 
 def mirror_image(catenary: _Line) -> _Line:
@@ -62,6 +64,7 @@ def mirror_image(catenary: _Line) -> _Line:
         else catenary.length - catenary.midpoint_position,
         equipment=tuple(item.mirrored(catenary) for item in catenary.equipment),
         wear=tuple(wear.mirrored(catenary) for wear in catenary.wear),
+        as_built=mirrored(catenary),
         evaluated_spans=evaluated,
     )
 

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from catenary_fe.layout.errors import counted
-from catenary_fe.layout.parameters import Number, Parameters
+from catenary_fe.layout.parameters import Number, Parameters, Positive
 from catenary_fe.layout.parts import CLOSEST
 
 if TYPE_CHECKING:
     from catenary_fe.layout.catenary import Catenary
     from catenary_fe.layout.parts import Span
+
+Floats = NDArray[np.float64]
 
 MOST_WORN = 0.5  # share that must be left: wires are taken down at 0.7 or 0.8
 _Share = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=MOST_WORN, le=1.0)]
@@ -40,6 +42,9 @@ class Wear(Parameters):
     """[1] residual area over that of the new wire"""
     contact_wire: Literal[1, 2] | None = None
     """which of two contact wires is worn, the right (1) or the left (2) one; unset: both"""
+    transition: Positive | None = None
+    """[m] over which the wear comes and goes at the ends of its range: pantographs then run on the surface
+    that it has left; unset: the surface is taken as even"""
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -78,6 +83,7 @@ def changes_of(catenary: Catenary) -> dict[str, int]:
         "dropper broken": sum(d.state == "broken" for d in all_of),
         "clamp slid": sum(bool(d.clamp_shift) and d.state is None for d in all_of),
         "range of worn contact wire": sum(len(part.wear) for part in parts),
+        "deviation as built": sum(len(part.as_built.given) for part in parts if part.as_built),
     }
     return {name: count for name, count in found.items() if count}
 
@@ -110,6 +116,39 @@ def designed_spans(catenary: Catenary) -> tuple[Any, ...]:
         else span
         for span in catenary.spans
     )
+
+
+def worn_depth(wear: Wear, diameter: float) -> float:
+    """[m] by which the running surface has come nearer to the wire's axis: worn off flat, from below.
+
+    The wire's grooves are left out: the section is a circle, of which a segment is gone.
+
+    diameter : [m] of the new wire
+    """
+    from scipy.optimize import brentq
+
+    worn = np.pi * (1 - wear.area_left)
+    half_angle = brentq(lambda a: a - np.sin(a) * np.cos(a) - worn, 0.0, np.pi)
+    return float(diameter / 2 * (1 - np.cos(half_angle)))
+
+
+def worn_surface(catenary: Catenary, wire: int, diameter: float, x: Floats) -> Floats:
+    """[m], shape of x [m]: by how much a contact wire's running surface lies above that of a new one.
+
+    wire : its number, from 0
+    """
+    surface: Floats = np.zeros(x.shape)
+    for wear in catenary.wear:
+        if wear.transition is None or wear.contact_wire not in (None, wire + 1):
+            continue
+        depth, (begin, end) = worn_depth(wear, diameter), wear.ends(catenary)
+        for place, sign in ((begin, 1.0), (end, -1.0)):
+            if 0 < place < catenary.length:  # to the line's ends the wear goes on
+                share = np.clip((x - place) / wear.transition + 0.5, 0, 1)
+                surface += sign * depth * (1 - np.cos(np.pi * share)) / 2
+            elif sign > 0:
+                surface += depth
+    return surface
 
 
 class BrokenDroppers(NamedTuple):

@@ -47,7 +47,7 @@ class Line(Catenary):
         first = min(sections, key=lambda section: section.contact_wire.wave_speed)
         common = {name: getattr(first, name) for name in Catenary.model_fields if name not in _OWN}
         common["equipment"] = _equipment(sections, overlaps)
-        common["wear"] = ()  # of the sections
+        common |= {"wear": (), "as_built": None}  # of the sections
         own = {name: data[name] for name in _OWN if name in data}
         return (
             common

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field
 
+from catenary_fe.layout.as_built import tension_ratio
 from catenary_fe.layout.parts import CLOSEST, Wire
 from catenary_fe.layout.track import support_bends
 
@@ -44,11 +45,13 @@ def tension_shares(catenary: Catenary, wire: WireField, x: ArrayLike) -> Floats:
 
     Friction takes some in a device at an end, and at each support from there to where the wire is held, by
     the midpoint anchor, else at the end without weights: T_i = T η (1 − loss)^i behind i supports. It is a
-    constant force on the wire, and does not turn round where the wire moves the other way.
+    constant force on the wire, and does not turn round where the wire moves the other way. Beside that, its
+    tension as built may be another than the nominal one.
     """
     at, ends = np.asarray(x, dtype=float), (catenary.begin.of(wire), catenary.end.of(wire))
+    built = tension_ratio(catenary, wire)
     if all(end.kind == "fixed" for end in ends):
-        return np.ones_like(at)
+        return np.full_like(at, built)
     held = midpoint_place(catenary, wire)
     if held is None:
         pulled = ends[1].kind == "weights" or (ends[1].kind == "spring" and ends[0].kind == "fixed")
@@ -57,8 +60,8 @@ def tension_shares(catenary: Catenary, wire: WireField, x: ArrayLike) -> Floats:
     before = np.searchsorted(inner, at)
     shares: Floats = np.where(
         at < held,
-        ends[0].efficiency * keeps**before,
-        ends[1].efficiency * keeps ** (inner.size - before),
+        built * ends[0].efficiency * keeps**before,
+        built * ends[1].efficiency * keeps ** (inner.size - before),
     )
     return shares
 
@@ -90,7 +93,7 @@ def slowest_contact_wire(catenary: Catenary) -> Wire:
         x = section.support_positions
         share = float(tension_shares(section, "contact_wire", (x[1:] + x[:-1]) / 2).min())
         wire = section.contact_wire
-        found.append(wire.replace(tension=wire.tension * share) if share < 1 else wire)
+        found.append(wire.replace(tension=wire.tension * share) if share != 1 else wire)
     return min(found, key=lambda wire: wire.wave_speed)
 
 

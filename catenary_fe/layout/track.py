@@ -103,7 +103,8 @@ def messenger_staggers(catenary: Catenary) -> Floats:
     track's own axis by the system height times its lean.
     """
     heights = catenary.messenger_support_heights - catenary.contact_wire_heights
-    above = catenary.staggers - heights * cant_angles(catenary)
+    drawn = np.array([support.stagger for support in catenary.supports])
+    above = drawn - heights * cant_angles(catenary)
     curved = [any(span.curvatures) for span in catenary.spans]
     in_curve = np.array([False, *curved]) | np.array([*curved, False])
     return np.array(

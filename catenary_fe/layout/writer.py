@@ -90,13 +90,14 @@ def _further(first: Catenary, section: Catenary, own: _Record, overlap: Overlap)
     others = {}
     for name in SectionEntry.model_fields.keys() & Catenary.model_fields.keys() - _MADE:
         value = getattr(section, name)
-        if name not in ("spans", "equipment", "wear") and value not in (None, getattr(first, name)):
+        if name not in ("spans", *_OF_ONE) and value not in (None, getattr(first, name)):
             others[name] = _wire(value) if isinstance(value, Wire) else _plain(value)
     head = {"overlap": {"spans": overlap.spans, "kind": overlap.kind, "as_written": True}}
-    lists = {name: _plain(items) for name in ("equipment", "wear") if (items := getattr(section, name))}
+    lists = {name: _plain(items) for name in _OF_ONE if (items := getattr(section, name))}
     return dict(sorted(others.items())) | {"stagger": own.get("stagger", 0.0)} | head | lists | own
 
 
+_OF_ONE = ("equipment", "wear", "as_built")  # of a section, which the next does not repeat
 _MADE = {"supports", "stagger", "curve_radius"}
 _BLOCKS = {
     "supports",

@@ -60,11 +60,13 @@ class MastSprings:
 def mast_springs(catenary: Catenary, wires: TautWires, as_set: Shape) -> MastSprings:
     """Those of a line whose arms and supports were set before it changed.
 
-    A spring keeps its preload, a link its pivot, and messenger supports with a stiffness give, too.
+    A spring keeps its preload, a link its pivot, and messenger supports with a stiffness give, too. As built,
+    they may stand elsewhere.
 
     as_set : the line then, in equilibrium
     """
     at, force, height, stiffness, links, pivot, length = [], [], [], [], [], [], []
+    raised = catenary.messenger_support_heights - as_set.catenary.messenger_support_heights
     for i, support in list(enumerate(catenary.supports))[1:-1]:
         for number in range(wires.mesh.first_stitch):
             of_contact, arm = number < wires.mesh.contact_wires, support.steady_arm
@@ -74,7 +76,9 @@ def mast_springs(catenary: Catenary, wires: TautWires, as_set: Shape) -> MastSpr
             hung, node = as_set.wires[number], as_set.mesh.wires[number].supports[i]
             then = as_set.installation
             on_wire = then.arm_forces[number, i] if of_contact else then.support_forces[i]
-            place = np.array([hung.y[node], hung.z[node]])
+            place = np.array([hung.y[node], hung.z[node]]) + (
+                [catenary.staggers[i] - as_set.catenary.staggers[i], 0.0] if of_contact else [0.0, raised[i]]
+            )
             reach = (arm.length or 0.0) if of_contact and arm else 0.0
             own = wires.mesh.first_nodes[number] + wires.mesh.wires[number].supports[i]
             at.append(int(wires.dof[own]))

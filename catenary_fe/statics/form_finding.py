@@ -17,6 +17,7 @@ from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.track import cant_forces, leaning_weights
 from catenary_fe.layout import GRAVITY, Catenary, SolverError, SteadyArm
+from catenary_fe.layout.as_built import set_heights
 from catenary_fe.layout.rules import dropper_names
 from catenary_fe.statics.as_set import mast_springs
 from catenary_fe.statics.rules import check_arms
@@ -160,7 +161,7 @@ class WireSubstructures:
             if not (support.steady_arm or i in (0, last)):
                 continue
             for wire, offset in enumerate(catenary.contact_wire_offsets):
-                held[self._at_support(wire, i)] = support.stagger + offset
+                held[self._at_support(wire, i)] = float(catenary.staggers[i]) + offset
         return held
 
     @cached_property
@@ -179,7 +180,7 @@ class WireSubstructures:
     @cached_property
     def _heights(self) -> TautProblem:
         """The wires with their droppers cut, the contact wires held where the droppers were."""
-        held = dict(zip(self._lower.tolist(), self.catenary.design_heights.tolist(), strict=True))
+        held = dict(zip(self._lower.tolist(), set_heights(self.catenary).tolist(), strict=True))
         return self.wires.problem(held | self._fixed_heights(), self._arm_springs)
 
     # equilibrium

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.mesh import MeshSettings
 from catenary_fe.layout import Catenary, InputError, Line, SolverError
 from catenary_fe.layout.arguments import checked
+from catenary_fe.layout.as_built import deviations
 from catenary_fe.layout.rules import check_lengths
 from catenary_fe.statics.form_finding import WireSubstructures
 from catenary_fe.statics.line import join_shapes
@@ -41,9 +42,10 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     loaded with it, give the room between the wires and, in space, how the droppers lean. Each is a linear
     problem; they are solved in turn until nothing changes.
 
-    What has changed since the droppers were cut (`state` and `clamp_shift` of droppers, `wear`) changes no
-    length, and no setting of an arm or a support: the line as designed gives both, and the line as it is is
-    hung with them.
+    What has changed since the droppers were cut (`state` and `clamp_shift` of droppers, `wear`, `as_built`)
+    changes no length, and no setting of an arm or a support: the line as designed gives both, and the line as
+    it is is hung with them. Lengths that are `as_built` longer are, and heights to which the wire was set
+    give other lengths.
 
     mesh : element lengths; a shape belongs to its mesh
 
@@ -56,14 +58,17 @@ def find_form(catenary: Catenary, mesh: MeshSettings | None = None) -> Shape:
     check_lengths(catenary)
     mesh = mesh or MeshSettings()
     designed = catenary.as_designed()
+    if heights := catenary.as_built and catenary.as_built.of_heights:
+        designed = designed.replace(as_built=heights)
     if catenary.gives_dropper_lengths:
         shape = _hang(designed, given_lengths(designed, None), mesh)
         check_bridged(designed, shape.dropper_lengths, shape.height_errors)
     else:
         shape = _find_lengths(designed, mesh)
-    if not catenary.departs_from_design:
+    if catenary == designed:
         return shape
-    return _hang(catenary, shape.dropper_lengths[catenary.hanging], mesh, shape)
+    longer = deviations(catenary, "dropper_length", catenary.designed_positions)
+    return _hang(catenary, (shape.dropper_lengths + longer)[catenary.hanging], mesh, shape)
 
 
 @checked

@@ -41,7 +41,7 @@ class LineShape(Shape):
     def system(self) -> System:
         """The assembled line, from which every engine starts."""
         line = self.catenary
-        base = BaseLine(line.support_positions, line.contact_wire_heights - line.contact_wire_height)
+        base = BaseLine(line.support_positions, line.drawn_heights - line.contact_wire_height)
         return self.joint.joined([shape.system for shape in self.sections], base)
 
     def dropper_schedule(self) -> list[DropperRow]:

@@ -107,6 +107,10 @@ LAYOUT: dict[str, Any] = {
     "equipment.wire": "messenger wire", "equipment.length": 1.5, "equipment.bending_stiffness": 3e3,
     "equipment.name": "an insulator", "equipment.source": "elsewhere",
     "wear.begin": 8.0, "wear.end": 25.0, "wear.span": 1, "wear.area_left": 0.8, "wear.contact_wire": 2,
+    "wear.transition": 2.0, "as_built.contact_wire_tension": 0.03, "as_built.messenger_wire_tension": -0.03,
+    "as_built.stagger": 0.02, "as_built.messenger_wire_height": 0.02,
+    "as_built.dropper_length": {"deviation": 0.002, "seed": 3},
+    "as_built.contact_wire_height": [[0.0, 0.0], [40.0, 0.01]], "as_built.pre_sag": 0.01,
     "cant_base": 1.1, "installation_temperature": 5.0, "span.curve_radius_end": 500.0,
     "span.length": 32.0, "span.pre_sag": 0.01, "span.curve_radius": 700.0, "span.count": 3, "supports.at": 3,
     "midpoint": 2, "midpoint_position": 35.0, "tension_loss": 0.01,
@@ -202,6 +206,7 @@ def computed(line: cf.Catenary) -> Iterator[Any]:
     shape = cf.find_form(line)
     yield shape.dropper_schedule()
     yield [wire.z.round(9).tolist() for wire in shape.wires]
+    yield [wire.irregularity and float(wire.irregularity.values.sum()) for wire in shape.system.wires]
     model = linear_model(shape.system)
     weights = np.cos(np.arange(model.size))
     for matrix in (model.mass, model.damping, model.stiffness):

@@ -22,6 +22,7 @@ SECTION: dict[str, Any] = {
     "midpoint": 3,
     "midpoint_position": 75.0,
     "equipment": [{"x": 22.0, "mass": 9.0}],
+    "as_built": {"dropper_length": 0.003},
     "wear": [{"span": 2, "area_left": 0.9}],
     "overlap": {"spans": 4, "lift": 0.06},
     "count": 2,

@@ -73,6 +73,10 @@ def by_hand(wire: cf.Catenary, design: cf.Shape) -> tuple[np.ndarray, np.ndarray
     arm_z = design.wires[0].height(masts)
     top, top_z = design.support_forces, design.messenger_wire.height(masts)
     stiffness = np.array([d.stiffness for d in wire.droppers])
+    built = wire.as_built or cf.AsBuilt()
+    length = length + built.at("dropper_length", ups)
+    top_z = top_z + built.at("messenger_wire_height", masts)
+    ratio = {name: 1 + float(built.at(f"{name}_wire_tension", 0.0)) for name in nodes}
 
     def forces(z):
         rise = np.interp(ups, nodes["messenger"], z[n:]) - np.interp(lows, nodes["contact"], z[:n])
@@ -92,7 +96,7 @@ def by_hand(wire: cf.Catenary, design: cf.Shape) -> tuple[np.ndarray, np.ndarray
             for wear in wire.wear if name == "contact" else ():
                 begin, end = wear.ends(wire)
                 weight[(middle > begin) & (middle < end)] *= wear.area_left
-            slope = params.tension * np.diff(own) / h
+            slope = ratio[name] * params.tension * np.diff(own) / h
             force = np.zeros(x.size)
             force[:-1] += slope - GRAVITY * weight * h / 2
             force[1:] -= slope + GRAVITY * weight * h / 2
@@ -105,7 +109,8 @@ def by_hand(wire: cf.Catenary, design: cf.Shape) -> tuple[np.ndarray, np.ndarray
                 force[at[1:-1]] -= GRAVITY * ARM.mass
             else:
                 force[at[1:-1]] += top[1:-1] - 3e5 * (own[at] - top_z)[1:-1]
-            force[at[[0, -1]]] = (own - (arm_z[0] if name == "contact" else top_z[0]))[[0, -1]]
+            ends = (arm_z if name == "contact" else top_z)[[0, -1]]
+            force[at[[0, -1]]] = own[[0, -1]] - ends
             total.append(force)
         return np.concatenate(total)
 
@@ -121,9 +126,19 @@ CHANGES = {
     "broken": line({(2, 2): {"state": "broken"}, (2, 4): {"state": "missing"}}),
     "slid": line({(2, 3): {"clamp_shift": 0.25}, (1, 2): {"clamp_shift": -0.1}}),
     "worn": line(wear=[cf.Wear(span=2, area_left=0.8), cf.Wear(begin=110.0, end=125.0, area_left=0.7)]),
+    "built otherwise": line(
+        as_built=cf.AsBuilt(
+            contact_wire_tension=-0.04,
+            messenger_wire_tension=0.05,
+            dropper_length=[[0.0, 0.0], [60.0, 0.01], [90.0, -0.015], [150.0, 0.0]],
+            messenger_wire_height=[[0.0, 0.005], [50.0, 0.02], [100.0, -0.01], [150.0, 0.0]],
+        )
+    ),
+    "lengths by chance": line(as_built=cf.AsBuilt(dropper_length={"deviation": 0.006, "seed": 2})),
     "all": line(
         {(1, 5): {"state": "missing"}, (2, 2): {"clamp_shift": 0.2}, (3, 1): {"state": "broken"}},
         wear=[cf.Wear(begin=0.0, end=150.0, area_left=0.85)],
+        as_built=cf.AsBuilt(dropper_length=0.004, contact_wire_tension=0.03),
     ),
 }
 
@@ -132,7 +147,9 @@ CHANGES = {
 def test_strings_by_hand(name):
     changed = CHANGES[name]
     shape, design = cf.find_form(changed), cf.find_form(changed.as_designed())
-    assert shape.dropper_lengths.tolist() == design.dropper_lengths[changed.hanging].tolist()
+    longer = (changed.as_built or cf.AsBuilt()).at("dropper_length", changed.dropper_positions)
+    cut = design.dropper_lengths[changed.hanging] + longer
+    assert shape.dropper_lengths == pytest.approx(cut, abs=1e-12)
     heights, forces = by_hand(changed, design)
     z = np.concatenate([wire.z for wire in shape.wires])[shape.mesh.nodes(shape.mesh.lower)]
     x = np.linspace(0, 3 * SPAN, 301)

@@ -21,6 +21,12 @@ _OR_TABLE = ", or a list of [x, value] pairs"
 ROPE_FILL = 0.76  # of a rope's circle: 19 and 37 wires
 
 
+def outer_diameter(wire: Wire, *, rope: bool = False) -> float:
+    """[m] of a wire: its own, else that of copper of its mass."""
+    fill = ROPE_FILL if rope else 1.0
+    return wire.diameter or float(np.sqrt(4 * wire.mass_per_length / (np.pi * COPPER * fill)))
+
+
 @dataclass(frozen=True)
 class WirePart:
     """Places on one wire, of which an effect says what it does there.
@@ -36,9 +42,8 @@ class WirePart:
 
     @property
     def diameter(self) -> float:
-        """[m] outside: the wire's own, else that of copper of its mass, of a rope but for contact wires."""
-        fill = 1.0 if self.kind == "contact_wire" else ROPE_FILL
-        return self.wire.diameter or float(np.sqrt(4 * self.wire.mass_per_length / (np.pi * COPPER * fill)))
+        """[m] outside."""
+        return outer_diameter(self.wire, rope=self.kind != "contact_wire")
 
     @property
     def nothing(self) -> Floats:
@@ -83,7 +88,11 @@ class Effect:
 
 
 def _over_x(least: float, most: float) -> PlainValidator:
-    """A number between two bounds, or a table of [x, number] pairs in order."""
+    return PlainValidator(check_over_x(least, most))
+
+
+def check_over_x(least: float, most: float) -> Callable[[Any], NumberOrTable]:
+    """Takes a number between two bounds, or a table of [x, number] pairs in order; raises ValueError."""
 
     def check(value: Any) -> float | Table:
         if not isinstance(value, (list, tuple)):
@@ -102,14 +111,18 @@ def _over_x(least: float, most: float) -> PlainValidator:
             found.append((x, _number(pair[1], least, most, f"entry {n}: value ")))
         return tuple(found)
 
-    return PlainValidator(check)
+    return check
 
 
 def _schema(least: float, most: float) -> WithJsonSchema:
+    return WithJsonSchema(schema_over_x(least, most))
+
+
+def schema_over_x(least: float, most: float) -> dict[str, Any]:
     """What an editor checks of it."""
     number = {"type": "number", "minimum": least, "maximum": most}
     pair = {"type": "array", "prefixItems": [{"type": "number"}, number], "minItems": 2, "maxItems": 2}
-    return WithJsonSchema({"anyOf": [number, {"type": "array", "items": pair}]})
+    return {"anyOf": [number, {"type": "array", "items": pair}]}
 
 
 def _number(value: Any, least: float, most: float, what: str) -> float:

@@ -54,12 +54,19 @@ class ContactWireIrregularity(Parameters):
             return over_x(self.height, x)
         assert self.deviation is not None
         rng = np.random.default_rng(self.seed)
-        numbers = 2 * np.pi * np.linspace(1 / self.longest_wave, 1 / self.shortest_wave, WAVES)
-        found: Floats = np.zeros(x.shape)
-        for number, phase in zip(numbers, rng.uniform(0, 2 * np.pi, WAVES), strict=True):
-            found += np.cos(number * x + phase)
-        found *= self.deviation * np.sqrt(2 / WAVES)
-        return found
+        return drawn_waves(x, self.deviation, self.shortest_wave, self.longest_wave, rng)
+
+
+def drawn_waves(
+    x: Floats, deviation: float, shortest: float, longest: float, rng: np.random.Generator
+) -> Floats:
+    """Shape of x [m]: waves between two lengths [m], as much of each wave number, phases by chance."""
+    numbers = 2 * np.pi * np.linspace(1 / longest, 1 / shortest, WAVES)
+    found: Floats = np.zeros(x.shape)
+    for number, phase in zip(numbers, rng.uniform(0, 2 * np.pi, WAVES), strict=True):
+        found += np.cos(number * x + phase)
+    found *= deviation * np.sqrt(2 / WAVES)
+    return found
 
 
 @dataclass(frozen=True)
