@@ -60,6 +60,22 @@ class Wires(NamedTuple):
     w: Floats
 
 
+class Laws(NamedTuple):
+    """Forces inside pantographs that are not linear, see ``Law`` in ``layout.substructure``.
+
+    kind, owner : shape (slots, laws), -1: none; and the pantograph
+    row : shape (slots, laws, coordinates)
+    values : shape (slots, laws, 2)
+    frame : shape (slots, laws, points, 4)
+    """
+
+    kind: Integers
+    owner: Integers
+    row: Floats
+    values: Floats
+    frame: Floats
+
+
 class PantographParameters(NamedTuple):
     """Pantographs of each slot and their contacts; heights count from the nominal contact wire height.
 
@@ -79,6 +95,7 @@ class PantographParameters(NamedTuple):
     last : shape (slots,), number of the run's last step
     nominal : [m], height that coordinates count from
     base_x, base_z : [m], shape (points,), the line that bases follow
+    laws : what is not linear in them
     """
 
     K: Floats
@@ -104,6 +121,7 @@ class PantographParameters(NamedTuple):
     nominal: float
     base_x: Floats
     base_z: Floats
+    laws: Laws
 
 
 class PantographState(NamedTuple):
@@ -151,6 +169,7 @@ class Work(NamedTuple):
     """Room of one step, by slot first.
 
     force : [N], shape (slots, contacts)
+    law_force : [N], shape (slots, laws)
     slack : [N], shape (slots, droppers), what is taken off a dropper that is not as a taut one
     swing : [N], shape (slots, links, 2), what a link's force has more than its tangent
     tension : [N], shape (slots, gaps), change of tension at the end of the step before
@@ -166,6 +185,7 @@ class Work(NamedTuple):
     """
 
     force: Floats
+    law_force: Floats
     slack: Floats
     arm_force: Floats
     tension: Floats

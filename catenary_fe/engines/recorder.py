@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import PantographParameters, PantographState, Records, Surfaces
+from catenary_fe.engines.arrays import Laws, PantographParameters, PantographState, Records, Surfaces
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.history import History, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.sections import Computed
@@ -46,6 +46,8 @@ class Sizes:
     steps: int
     shapes: int = 0
     points: int = 0
+    laws: int = 0
+    frames: int = 0
 
     @classmethod
     def of(cls, runs: Sequence[Sequence[PlacedPantograph]], wires: int, steps: int, every: int) -> Sizes:
@@ -61,6 +63,8 @@ class Sizes:
             steps=steps,
             shapes=steps // every + 1 if every else 0,
             points=max((len(body.contact.points) for body in bodies), default=0),
+            laws=max((sum(len(placed.body.laws) for placed in run) for run in runs), default=0),
+            frames=max((len(law.table) for body in bodies for law in body.laws), default=0),
         )
 
 
@@ -126,6 +130,7 @@ def make_pantographs(
         nominal=nominal,
         base_x=base.x,
         base_z=base.z,
+        laws=_no_laws(slots, sizes),
     )
     state = PantographState(
         q=np.zeros(own),
@@ -135,6 +140,30 @@ def make_pantographs(
         step=np.zeros(slots, dtype=np.int64),
     )
     return parameters, state
+
+
+def _no_laws(slots: int, sizes: Sizes) -> Laws:
+    each = (slots, sizes.laws)
+    return Laws(
+        kind=np.full(each, -1),
+        owner=np.zeros(each, dtype=np.int64),
+        row=np.zeros((*each, sizes.coordinates)),
+        values=np.zeros((*each, 2)),
+        frame=np.zeros((*each, sizes.frames, 4)),
+    )
+
+
+def _load_laws(laws: Laws, slot: int, pantographs: Sequence[PlacedPantograph]) -> None:
+    laws.kind[slot], laws.row[slot], n = -1, 0.0, 0
+    for p, placed in enumerate(pantographs):
+        for law in placed.body.laws:
+            laws.kind[slot, n], laws.owner[slot, n] = law.kind, p
+            laws.row[slot, n, : len(law.row)] = law.row
+            laws.values[slot, n, : len(law.values)] = law.values
+            if law.table:
+                laws.frame[slot, n] = law.table[-1]  # what is beyond its own points is as at the last
+                laws.frame[slot, n, : len(law.table)] = law.table
+            n += 1
 
 
 def make_records(
@@ -187,6 +216,7 @@ def load_pantographs(
     ):
         array[slot] = 0.0
     heads.owner[slot] = -1
+    _load_laws(heads.laws, slot, start.pantographs)
     for p, placed in enumerate(start.pantographs):
         body, m = placed.body, placed.body.size
         state.q[slot, p, :m] = placed.heights

@@ -34,6 +34,55 @@ class Stage(Parameters):
     """[N/m] of the spring below the mass"""
     damping: NonNegative = 0.0
     """[N s/m] of the damper below the mass"""
+    damping_up: NonNegative | None = None
+    """[N s/m] of a damper that differs: while the mass rises against what is below it"""
+    damping_down: NonNegative | None = None
+    """[N s/m] likewise, while it comes down; both instead of `damping`"""
+    friction: NonNegative = 0.0
+    """[N] dry, between the mass and what is below it"""
+    travel: tuple[Positive, Positive] | None = None
+    """[m] down and up by which the mass can move from where the spring below it is force-free, before it
+    meets its stops; unset: no stops"""
+    stop_stiffness: Positive = 1e6
+    """[N/m] of the stops (a value of an SNCF thesis)"""
+
+    @model_validator(mode="after")
+    def _one_damper(self) -> Self:
+        up, down = self.damping_up, self.damping_down
+        if (up is None) != (down is None):
+            raise ValueError("damping_up and damping_down belong together: give both or neither")
+        if up is not None and self.damping:
+            raise ValueError("damping has no effect beside damping_up and damping_down; leave it out")
+        if self.travel is None and self.stop_stiffness != type(self).model_fields["stop_stiffness"].default:
+            raise ValueError("stop_stiffness has no effect without travel; give both or neither")
+        return self
+
+    def joint(self, upper: int, lower: int, share: float = 1.0, lever: float = 0.0) -> Joint:
+        """The spring and damper below the mass, or a share of them, with what is not linear there."""
+        up, down = (self.damping if each is None else each for each in (self.damping_up, self.damping_down))
+        common = min(up, down)
+        return Joint(
+            upper,
+            lower,
+            share * self.stiffness,
+            share * common,
+            lever,
+            rising=share * (up - common),
+            falling=share * (down - common),
+            friction=share * self.friction,
+            travel=self.travel,
+            stop_stiffness=share * self.stop_stiffness,
+        )
+
+    @property
+    def in_words(self) -> str:
+        """One line."""
+        damper = f"{self.damping:g} N s/m"
+        if self.damping_up is not None:
+            damper = f"{self.damping_up:g} N s/m up and {self.damping_down:g} down"
+        friction = f", {self.friction:g} N of friction" if self.friction else ""
+        stops = f", stops at −{self.travel[0]:g} and {self.travel[1]:g} m" if self.travel else ""
+        return f"{self.mass:g} kg on {self.stiffness:g} N/m, {damper}{friction}{stops}"
 
 
 class AerodynamicForce(Parameters):
@@ -146,12 +195,9 @@ class Pantograph(Parameters):
         lever = head.spring_distance / 2 if head.spring_distance and spatial else 0.0
         inertia = head.rolling_inertia(first.mass) / count if lever else None
         below = [*range(count, count + len(self.stages) - 1), BASE]
-        joints = [
-            Joint(i, below[0], first.stiffness / count, first.damping / count, lever) for i in range(count)
-        ]
+        joints = [first.joint(i, below[0], 1 / count, lever) for i in range(count)]
         joints += [
-            Joint(i, lower, stage.stiffness, stage.damping)
-            for i, lower, stage in zip(below, below[1:], self.stages[1:], strict=False)
+            stage.joint(i, lower) for i, lower, stage in zip(below, below[1:], self.stages[1:], strict=False)
         ]
         strips = [Body(first.mass / count, inertia)] * count
         single = len(self.stages) == 1
@@ -171,10 +217,7 @@ class Pantograph(Parameters):
         names = ["mass 1 (head)", *(f"mass {n}" for n in range(2, len(self.stages) + 1))]
         return [
             ("source", self.source or "not given"),
-            *(
-                (name, f"{s.mass:g} kg on {s.stiffness:g} N/m, {s.damping:g} N s/m")
-                for name, s in zip(names, self.stages, strict=True)
-            ),
+            *((name, stage.in_words) for name, stage in zip(names, self.stages, strict=True)),
             ("mean force to reach", str(self.mean_force))
             if force is None
             else ("uplift force", f"{force:g} N"),

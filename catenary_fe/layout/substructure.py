@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+STOP, DAMPER, FRICTION, FRAME = range(4)  # kinds of laws
 BASE = -1  # number of the base, which moves along the track at constant height
 
 
@@ -32,6 +34,10 @@ class Joint:
     upper, lower : numbers of the bodies; the lower one may be ``BASE``
     stiffness, damping : [N/m], [N s/m]
     lever : [m] lateral distance of each half of the spring from the middle; the upper body rolls on them
+    rising, falling : [N s/m] of a damper beside that which acts while the upper body rises or falls alone
+    friction : [N] dry
+    travel : [m] by which it may become shorter and longer before it meets its stops; unset: none
+    stop_stiffness : [N/m] of these
     """
 
     upper: int
@@ -39,6 +45,61 @@ class Joint:
     stiffness: float
     damping: float
     lever: float = 0.0
+    rising: float = 0.0
+    falling: float = 0.0
+    friction: float = 0.0
+    travel: tuple[float, float] | None = None
+    stop_stiffness: float = 0.0
+
+    @property
+    def laws(self) -> list[tuple[int, float, tuple[float, ...]]]:
+        """What is not linear: kind, sign of the elongation that it is of, values, see :class:`Law`."""
+        dampers = ((self.rising, 1.0), (self.falling, -1.0))
+        found = [(DAMPER, sign, (damping,)) for damping, sign in dampers if damping]
+        if self.friction:
+            found.append((FRICTION, 1.0, (self.friction,)))
+        stops = zip(self.travel or (), (-1.0, 1.0), strict=False)
+        return found + [(STOP, sign, (limit, self.stop_stiffness)) for limit, sign in stops]
+
+
+@dataclass(frozen=True)
+class Law:
+    """A force that is not linear, against one row of a substructure's coordinates.
+
+    kind : ``STOP``: values (limit [m], stiffness [N/m]), pushes back beyond the limit; ``DAMPER``: (damping
+        [N s/m],), while the row grows; ``FRICTION``: (force [N],); ``FRAME``: (first, step [m]), and a table
+    row : shape (coordinates,), whose sum of products with them is the law's elongation
+    table : shape (points, 4), of a frame over its height: mass [kg] and force down [N] beyond the linear
+        ones, each with its slope
+    """
+
+    kind: int
+    row: tuple[float, ...]
+    values: tuple[float, ...]
+    table: tuple[tuple[float, float, float, float], ...] = ()
+
+    def static(self, u: float) -> tuple[float, float, float]:
+        """Force [N], its slope [N/m] and stored energy [J] at an elongation [m], at rest."""
+        if self.kind == STOP:
+            limit, stiffness = self.values
+            beyond = max(u - limit, 0.0)
+            return stiffness * beyond, stiffness if beyond > 0 else 0.0, stiffness * beyond**2 / 2
+        if self.kind == FRAME:
+            force = self._cubic(2)
+            return float(force(u)), float(force(u, 1)), float(force.antiderivative()(u))
+        return 0.0, 0.0, 0.0
+
+    def kinetic(self, u: float, w: float) -> float:
+        """[J] beyond that of the linear mass, at an elongation [m] and its rate [m/s]."""
+        return float(self._cubic(0)(u)) * w**2 / 2 if self.kind == FRAME else 0.0
+
+    def _cubic(self, column: int) -> Any:
+        from scipy.interpolate import CubicHermiteSpline
+
+        first, step = self.values
+        rows = np.array(self.table)
+        x = first + step * np.arange(len(rows))
+        return CubicHermiteSpline(x, rows[:, column], rows[:, column + 1])
 
 
 @dataclass(frozen=True)
@@ -108,6 +169,7 @@ class Substructure:
     strips : collector strips
     contact : the law between each strip and a wire
     follows : whether the base's height follows the contact wire's design height, else the rail
+    frame : of a frame's motion that is not linear, or None
     """
 
     bodies: tuple[Body, ...]
@@ -116,6 +178,38 @@ class Substructure:
     strips: tuple[Strip, ...]
     contact: ContactLaw
     follows: bool = True
+    frame: Law | None = None
+
+    @cached_property
+    def laws(self) -> tuple[Law, ...]:
+        """What is not linear."""
+        found: list[Law] = [self.frame] if self.frame else []
+        for joint in self.joints:
+            row = self._elongation(joint)
+            found += [Law(kind, tuple((sign * row).tolist()), values) for kind, sign, values in joint.laws]
+        return tuple(found)
+
+    def static_laws(self, y: Floats) -> tuple[Floats, Floats, float]:
+        """What laws add at rest: forces against the coordinates, their tangent, and stored energy [J].
+
+        y : shape (size,), coordinates
+
+        Returns arrays of shape (size,) and (size, size).
+        """
+        force, tangent, energy = np.zeros(self.size), np.zeros((self.size, self.size)), 0.0
+        for law in self.laws:
+            row = np.array(law.row)
+            pull, slope, stored = law.static(float(row @ y))
+            force += pull * row
+            tangent += slope * np.outer(row, row)
+            energy += stored
+        return force, tangent, energy
+
+    def energy(self, y: Floats, w: Floats) -> float:
+        """[J] kinetic and stored, at coordinates and their rates, shape (size,) both."""
+        linear = float((w @ self.mass @ w + y @ self.stiffness @ y) / 2)
+        moving = sum(law.kinetic(float(np.dot(law.row, y)), float(np.dot(law.row, w))) for law in self.laws)
+        return linear + moving + self.static_laws(y)[2]
 
     @cached_property
     def rolling(self) -> tuple[int, ...]:
@@ -178,13 +272,18 @@ class Substructure:
             row[len(self.bodies) + self.rolling.index(strip.body)] = 1.0
         return row
 
+    def _elongation(self, joint: Joint) -> Floats:
+        """Shape (size,): a joint's elongation as made of the coordinates."""
+        row = np.zeros(self.size)
+        row[joint.upper] = 1.0
+        if joint.lower != BASE:
+            row[joint.lower] = -1.0
+        return row
+
     def _joined(self, values: list[float]) -> Floats:
         total = np.zeros((self.size, self.size))
         for joint, value in zip(self.joints, values, strict=True):
-            row = np.zeros(self.size)
-            row[joint.upper] = 1.0
-            if joint.lower != BASE:
-                row[joint.lower] = -1.0
+            row = self._elongation(joint)
             total += value * np.outer(row, row)
             if joint.upper in self.rolling:
                 at = len(self.bodies) + self.rolling.index(joint.upper)

@@ -178,10 +178,23 @@ class _StaticContact:
         parts = zip(laws, depths, self.on, strict=True)
         return np.array([getattr(law, what)(depth) if on else 0.0 for law, depth, on in parts])
 
+    def _laws(self, x: Floats) -> tuple[Floats, Any, float]:
+        """What is not linear inside the pantographs: forces, their tangent, stored energy."""
+        from scipy.linalg import block_diag
+        from scipy.sparse import csr_matrix
+
+        parts = [
+            p.body.static_laws(x[a:b])
+            for p, a, b in zip(self.pantographs, self.first, self.first[1:], strict=False)
+        ]
+        forces = np.concatenate([np.zeros(0), *(force for force, _, _ in parts)])
+        tangent = csr_matrix(block_diag(np.zeros((0, 0)), *(slopes for _, slopes, _ in parts)))
+        return forces, tangent, sum(energy for _, _, energy in parts)
+
     def residual(self, x: Floats) -> Floats:
         n = self.system.size
         line = self.system.gather(self.system.out_of_balance(self.line_part(x))) + self.varying
-        own = self.load - self.K @ x[n:]
+        own = self.load - self.K @ x[n:] - self._laws(x)[0]
         residual: Floats = np.concatenate([line, own]) - self.rows.T @ self._of_laws("force", x)
         return residual
 
@@ -189,11 +202,13 @@ class _StaticContact:
         from scipy.sparse import block_diag, diags
 
         line = self.system.tangent(self.line_part(x), taut=False)
-        return block_diag([line, self.K]) + self.rows.T @ diags(self._of_laws("slope", x)) @ self.rows
+        own = self.K + self._laws(x)[1]
+        return block_diag([line, own]) + self.rows.T @ diags(self._of_laws("slope", x)) @ self.rows
 
     def energy(self, x: Floats) -> float:
         y = x[self.system.size :]
         own = float(y @ (self.K @ y) / 2 - self.load @ y)
+        own += self._laws(x)[2]
         own += float(self._of_laws("energy", x).sum() - self.varying @ x[: self.system.size])
         return self.system.energy(self.line_part(x)) + own
 

@@ -11,7 +11,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.exudyn.laws import push_only
+from catenary_fe.engines.exudyn.laws import joint_law, push_only
 from catenary_fe.fe.system import System
 from catenary_fe.layout import AnyPantograph, AttachedPantograph
 from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
@@ -202,6 +202,8 @@ def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], gro
                 stiffness=joint.stiffness * factor,
                 damping=joint.damping * factor,
             )
+            if factor == 1.0 and joint.laws:
+                spring.springForceUserFunction = joint_law(mbs, joint)
             found.append(int(mbs.AddObject(spring)))
     return found
 

@@ -11,7 +11,9 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from catenary_fe.layout.substructure import ContactLaw
+from catenary_fe.layout.substructure import DAMPER, STOP, ContactLaw, Joint
+
+SLIDES = 1e-3  # [m/s] from which on dry friction has its full force in Exudyn's runs
 
 
 def tension_only(mbs: exu.MainSystem) -> object:
@@ -49,6 +51,31 @@ def push_only(mbs: exu.MainSystem, up: int, contact: ContactLaw) -> object:
 
     name = f"push only {up} {contact.preload} {contact.points}"
     return _in_cpp(mbs, push, "ObjectConnectorCartesianSpringDamper", name)
+
+
+def joint_law(mbs: exu.MainSystem, joint: Joint) -> object:
+    """The law of a pantograph's joint with stops, a damper that differs, or dry friction.
+
+    Friction grows with the velocity up to ``SLIDES``, where it has its full force: Newton's method knows no
+    standstill. The connector's displacement is the lower end's above the upper one's.
+    """
+    zero = exu.symbolic.Real(0.0)
+
+    def pull(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
+        force = stiffness * displacement + damping * velocity
+        for kind, sign, values in joint.laws:
+            if kind == STOP:
+                force = force - sign * values[1] * exu.symbolic.max(zero, -sign * displacement - values[0])
+            elif kind == DAMPER:
+                force = force - sign * values[0] * exu.symbolic.max(zero, -sign * velocity)
+            else:
+                most = exu.symbolic.Real(values[0])
+                force = force + exu.symbolic.max(
+                    -most, exu.symbolic.min(most, velocity * (values[0] / SLIDES))
+                )
+        return force
+
+    return _in_cpp(mbs, pull, "ObjectConnectorCoordinateSpringDamper", f"joint {joint.laws}")
 
 
 def _damped(spring: Any, damper: Any) -> Any:

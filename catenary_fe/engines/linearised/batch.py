@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines import arrays as shared
-from catenary_fe.engines import contact_solver, generalized_alpha, kernels
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels, pantograph_laws
 from catenary_fe.engines.arrays import (
     SLOTS,
     PantographParameters,
@@ -74,6 +74,7 @@ class Batch:
         width = 2 * line.contact_compliance.value.shape[1]
         self.work = Work(
             force=np.zeros((slots, j)),
+            law_force=np.zeros((slots, sizes.laws)),
             slack=np.zeros((slots, line.k.size)),
             arm_force=np.zeros((slots, line.links.k.size, 2)),
             tension=np.zeros((slots, line.tensions.size)),
@@ -242,7 +243,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
 
 
 _advance_one, _advance_eight = _loops(
-    stamp(shared, generalized_alpha, contact_solver, kernels, arrays, forces, stretch)
+    stamp(shared, generalized_alpha, contact_solver, pantograph_laws, kernels, arrays, forces, stretch)
 )
 
 

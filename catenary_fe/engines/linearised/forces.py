@@ -22,6 +22,7 @@ from catenary_fe.engines.contact_solver import (
 )
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.linearised.arrays import Line, SteadyArmBars
+from catenary_fe.engines.pantograph_laws import update_laws
 
 UNSETTLED = 1e-3  # [N] by which they may still change after the last sweep
 LOOSE = 1e-3  # [N] of a link's force that is left out
@@ -179,6 +180,9 @@ def solve_contacts(
     links = line.links.k.size
     if links > 0:
         work.arm_force[c, :, :] = 0.0
+    laws = heads.laws.kind.shape[1]
+    if laws > 0:
+        work.law_force[c, :] = 0.0
     free_heads(heads, pantographs, c, time)
     settled, change = True, 0.0
     while True:
@@ -191,7 +195,9 @@ def solve_contacts(
                 change = max(change, update_dropper(scheme, line, wires, work, c, work.active[c, a]))
             if links > 0:
                 change = max(change, update_arms(scheme, line, wires, work, c))
-            settled = change <= TOLERANCE or contacts + work.active_count[c] + links == 1
+            if laws > 0:
+                change = max(change, update_laws(scheme, heads, pantographs, work, c))
+            settled = change <= TOLERANCE or contacts + work.active_count[c] + links + laws == 1
             if settled:
                 break
         if not find_slack(scheme, line, wires, work, to.droppers[c, :, pantographs.step[c] + 1], c):

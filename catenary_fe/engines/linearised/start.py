@@ -43,7 +43,7 @@ def static_contact(
         now = np.flatnonzero(spring <= 0).tolist()
         now_off = [j for j, force in enumerate(forces) if force < 0 or j in off]
         before, shifted = shifted, setup.static.solve(load + stretch_loads(setup.line, q))
-        moved = problem.take_tangents(forces, q)
+        moved = problem.take_tangents(forces, q) | problem.take_laws(heads)
         settled = np.abs(shifted - before).max() <= _SETTLED * np.abs(q).max()
         if now == slack and now_off == off and settled and not moved:
             placed = problem.placed(heads, forces, q)
@@ -98,6 +98,8 @@ class _Contact:
         self._laws = laws
         self._tangents = [(law.preload, law.stiffness) for law in laws]  # force at the strip's height, slope
         self.take_tangents(np.zeros(len(rows)), np.zeros(setup.model.size))
+        self._own = [placed.body.static_laws(np.zeros(placed.body.size)) for placed in pantographs]
+        self._at: Floats = np.zeros(int(self._first[-1]))
 
     def take_tangents(self, forces: Floats, q: Floats) -> bool:
         """Take the straight piece of each law of points where its contact is; true if one changed."""
@@ -114,6 +116,18 @@ class _Contact:
             changed |= not np.allclose(tangent, self._tangents[j], rtol=1e-9, atol=1e-9)
             self._tangents[j] = tangent
         return changed
+
+    def take_laws(self, heads: Floats) -> bool:
+        """Take the tangents of what is not linear in the pantographs where they are; true if that changed.
+
+        heads : shape (coordinates of all,)
+        """
+        if not any(placed.body.laws for placed in self._pantographs):
+            return False
+        parts = zip(self._pantographs, self._first, self._first[1:], strict=False)
+        self._own = [placed.body.static_laws(heads[a:b]) for placed, a, b in parts]
+        before, self._at = self._at, heads
+        return float(np.abs(heads - before).max()) > _SETTLED
 
     def solve(
         self, slack: list[int], off: list[int], shifted: Floats
@@ -133,9 +147,11 @@ class _Contact:
         A[total:, total:] = rows @ lifts
         for p, placed in enumerate(self._pantographs):
             part = slice(self._first[p], self._first[p + 1])
-            A[part, part] = placed.body.stiffness
+            force, tangent, _ = self._own[p]
+            A[part, part] = placed.body.stiffness + tangent
             risen = self._setup.base_line.under(placed.body, placed.position)
             right[part] = placed.uplift * placed.body.load + risen * placed.body.base_load
+            right[part] += tangent @ self._at[part] - force
         for j in range(count):
             self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ shifted))
         for i, dropper in enumerate(slack):

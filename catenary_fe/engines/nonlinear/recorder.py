@@ -57,7 +57,7 @@ class EnergyRecord:
             body, m = placed.body, placed.body.size
             x: Floats = own.x[0, p, :m]
             y, w = own.q[0, p, :m] + scheme.b * x, own.v[0, p, :m] + scheme.g * x
-            total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - placed.uplift * body.load @ y)
+            total += body.energy(y, w) - placed.uplift * float(body.load @ y)
         self._values.append(total)
 
 

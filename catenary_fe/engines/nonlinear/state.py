@@ -64,6 +64,7 @@ class State:
             *self.wires[:4],
             self.motion.total,
             self.work.force,
+            self.work.law_force,
             *self.pantographs,
             *self.energy[:-1],
         ]
@@ -106,6 +107,7 @@ def _work(sizes: Sizes) -> Work:
     j, m = sizes.contacts, sizes.coordinates
     return Work(
         force=np.zeros((1, j)),
+        law_force=np.zeros((1, sizes.laws)),
         slack=np.zeros((1, 0)),
         arm_force=np.zeros((1, 0, 2)),
         tension=np.zeros((1, 0)),
@@ -141,6 +143,7 @@ def _energy_balance(start: InitialState, total: Floats, system: Equations, sizes
         heads=heads,
         head_drag=np.zeros(masses),
         force=np.zeros(j),
+        law_force=np.zeros(sizes.laws),
         shape=np.zeros((j, 4)),
         at=np.full((j, 4), -1),
         head=np.zeros((j, sizes.coordinates)),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from catenary_fe.engines import arrays as shared_arrays
-from catenary_fe.engines import contact_solver, generalized_alpha, kernels
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels, pantograph_laws
 from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Records, Wires, Work
 from catenary_fe.engines.compiled import compiled, kept, stamp
 from catenary_fe.engines.contact_solver import (
@@ -36,6 +36,8 @@ from catenary_fe.engines.nonlinear.forces import (
     take_links,
     woodbury_update,
 )
+from catenary_fe.engines.pantograph_laws import begin_laws, update_laws
+from catenary_fe.layout.substructure import DAMPER, FRICTION
 
 ITERATIONS = 20
 FLOOR = 1e-8  # [m] motion in a step below which a run is at rest
@@ -56,6 +58,7 @@ def _place(
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
     advance_heads(scheme, pantographs, 0)
     free_heads(heads, pantographs, 0, time)
+    begin_laws(heads, pantographs, work, 0)
     for j in range(heads.owner.shape[1]):
         p = heads.owner[0, j]
         if p < 0:
@@ -125,13 +128,15 @@ def _relax(
     scheme: Scheme, wires: Wires, heads: PantographParameters, pantographs: PantographState, work: Work
 ) -> None:
     """Bring the contact forces to their laws, and the accelerations with them."""
-    contacts = heads.owner.shape[1]
+    contacts, laws = heads.owner.shape[1], heads.laws.kind.shape[1]
     for _ in range(SWEEPS):
         change = 0.0
+        if laws > 0:
+            change = update_laws(scheme, heads, pantographs, work, 0)
         for j in range(contacts):
             if heads.owner[0, j] >= 0:
                 change = max(change, update_contact(scheme, wires, heads, pantographs, work, 0, j))
-        if change <= TOLERANCE or contacts == 1:
+        if change <= TOLERANCE or contacts + laws == 1:
             break
 
 
@@ -213,7 +218,8 @@ def _add_energy(
         energy.damper[i], energy.span[i] = energy.new_damper[i], energy.new_span[i]
     energy.work[0] += _contact_work(scheme, heads, pantographs, work, energy, moved)
     energy.work[0] += _base_work(scheme, heads, pantographs, energy, time)
-    energy.work[1] += lost + _head_losses(scheme, heads, pantographs, energy)
+    energy.work[1] += lost + _law_losses(scheme, heads, pantographs, work, energy)
+    energy.work[1] += _head_losses(scheme, heads, pantographs, energy)
 
 
 @compiled
@@ -265,6 +271,27 @@ def _base_work(
                 place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
                 driven += risen * heads.base_load[0, p, s] * (place - energy.heads[p, s])
     return driven
+
+
+@compiled
+def _law_losses(
+    scheme: Scheme,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    work: Work,
+    energy: EnergyBalance,
+) -> float:
+    """What dry friction and dampers that differ took in the pantographs [J]."""
+    lost = 0.0
+    for n in range(heads.laws.kind.shape[1]):
+        if heads.laws.kind[0, n] == DAMPER or heads.laws.kind[0, n] == FRICTION:
+            p, moved = heads.laws.owner[0, n], 0.0
+            for s in range(pantographs.x.shape[2]):
+                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
+                moved += heads.laws.row[0, n, s] * (place - energy.heads[p, s])
+            lost += (energy.law_force[n] + work.law_force[0, n]) * moved / 2
+            energy.law_force[n] = work.law_force[0, n]
+    return lost
 
 
 @compiled
@@ -359,4 +386,6 @@ def _loop(sources: str) -> Any:
     return advance
 
 
-advance = _loop(stamp(shared_arrays, generalized_alpha, contact_solver, kernels, arrays, cables, forces))
+advance = _loop(
+    stamp(shared_arrays, generalized_alpha, contact_solver, pantograph_laws, kernels, arrays, cables, forces)
+)
