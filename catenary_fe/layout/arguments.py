@@ -141,8 +141,8 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "WireProblem": ("a WireProblem", "give WireProblem(wire=..., x=...)"),
 }
 _UNIONS = {
-    "DescribedPantograph": ("Pantograph", "ElasticPantograph"),
-    "AnyPantograph": ("Pantograph", "ElasticPantograph", "AttachedPantograph"),
+    "DescribedPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph"),
+    "AnyPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph", "AttachedPantograph"),
 }
 _PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", lambda v: isinstance(v, Real) and not isinstance(v, bool | np.bool_)),
