@@ -85,8 +85,8 @@ class ReceptancePantograph(PushedPantograph):
         if 2 * leads.sum() > leads.size:
             raise ValueError(
                 f"at {leads.sum()} of {leads.size} frequencies the head is ahead of the force, and so gives"
-                " energy; turn the phases' sign: they lie between -180° and 0, of apparent mass and dynamic"
-                " stiffness between 0 and 180°"
+                " energy; turn the phases' sign: they lie between -180° and 0, of dynamic stiffness between 0"
+                " and 180°"
             )
         return rows
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph, DescribedPantograph, InputError
+from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number, numbers
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.layout.substructure import Substructure
@@ -94,7 +94,7 @@ class PantographResponse:
 
 @checked
 def pantograph_response(
-    pantograph: DescribedPantograph, frequencies: Sequence[float] | None = None, *, speed: float = 0.0
+    pantograph: AnyPantograph, frequencies: Sequence[float] | None = None, *, speed: float = 0.0
 ) -> PantographResponse:
     """Own frequencies, receptance and static force of a pantograph on a base at rest, without the wire.
 
@@ -122,7 +122,7 @@ def pantograph_response(
 
 @checked
 def receptance_table(
-    pantograph: DescribedPantograph, path: str | Path, frequencies: Sequence[float] | None = None
+    pantograph: AnyPantograph, path: str | Path, frequencies: Sequence[float] | None = None
 ) -> Path:
     """Write the receptance of a pantograph as a table, which a pantograph's file may name; returns its path.
 

@@ -14,8 +14,8 @@ _ROUNDS = 20  # of moving the poles
 def fitted_poles(omega: Floats, H: Complex, modes: int) -> Complex:
     """2 · modes poles in the left half plane, moved until a rational function of them meets the table."""
     own = np.geomspace(omega[0], omega[-1], modes + 2)[1:-1]
-    poles = np.array([z for w in own.tolist() for z in (complex(-0.05 * w, w), complex(-0.05 * w, -w))])
-    s: Complex = 1j * omega
+    poles = np.array([w * complex(-0.05, side) for w in own for side in (1, -1)], dtype=np.complex128)
+    s = (1j * omega).astype(np.complex128)
     for _ in range(_ROUNDS):
         poles = _paired(poles)
         basis, A = _basis(s, poles)

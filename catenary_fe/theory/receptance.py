@@ -96,9 +96,9 @@ def fit_receptance(
     mass = float(np.exp(-np.log(omega**2 * np.abs(H)).mean())) / rate**2
     unit = mass * rate**2
     static = None if static_stiffness is None else static_stiffness / unit
-    chain = _of_so_many(
-        _Table(omega, np.asarray(H * unit, dtype=np.complex128), static), most, chosen=modes is None
-    )
+    table = _Table(omega, np.asarray(H * unit, dtype=np.complex128), static)
+    with np.errstate(all="ignore"):  # of starts that lead nowhere
+        chain = _of_so_many(table, most, chosen=modes is None)
     return MassChain(chain.masses * mass, chain.springs * unit, chain.damping * mass * rate)
 
 
