@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shlex
 import shutil
 import tempfile
@@ -17,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
+from catenary_fe.layout.receptance import receptance_table_of
+from catenary_fe.layout.toml import read_toml
 from catenary_fe.results.export import write_csv
 from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
 
@@ -202,11 +205,13 @@ class InputFiles:
 
     layout : bytes of the layout file
     pantographs : names in the library, or bytes of files
+    tables : of each pantograph, bytes of the table of receptances that its file names, if it does
     conditions : bytes of their file, if there is one
     """
 
     layout: bytes
     pantographs: tuple[str | bytes, ...]
+    tables: tuple[bytes | None, ...] = ()
     conditions: bytes | None = None
 
     @classmethod
@@ -219,13 +224,11 @@ class InputFiles:
             raise InputError(
                 f"{layout}: a run with -o keeps its layout, which a pipe has only once; give a file"
             )
-        paths = [Path(name) for name in pantographs]
+        found = [_pantograph_file(number, name) for number, name in enumerate(pantographs, start=1)]
         return cls(
             Path(layout).read_bytes(),
-            tuple(
-                path.read_bytes() if path.is_file() else name
-                for path, name in zip(paths, pantographs, strict=True)
-            ),
+            tuple(file for file, _ in found),
+            tuple(table for _, table in found),
             Path(conditions).read_bytes() if conditions else None,
         )
 
@@ -235,6 +238,9 @@ class InputFiles:
         options : of the command, besides layout and pantographs
         """
         files, words = {"layout.toml": self.layout}, ["catenary-fe", "run", "layout.toml"]
+        for number, table in enumerate(self.tables, start=1):
+            if table is not None:
+                files[_table_name(number)] = table
         for number, given in enumerate(self.pantographs, start=1):
             name = f"pantograph_{number}.toml" if isinstance(given, bytes) else given
             if isinstance(given, bytes):
@@ -248,6 +254,26 @@ class InputFiles:
         sums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
         command = shlex.join([*words, *options])
         folder.json("inputs.json", {"command": command, "files_sha256": sums} | recorded_inputs(run))
+
+
+def _table_name(number: int) -> str:
+    return f"pantograph_{number}_receptance.csv"
+
+
+def _pantograph_file(number: int, name: str) -> tuple[str | bytes, bytes | None]:
+    """A name of the library, or a file's bytes; and those of the table that it names, by the kept name."""
+    path = Path(name)
+    if not path.is_file():
+        return name, None
+    text = path.read_bytes()
+    table = receptance_table_of(path, read_toml(path, "pantograph"))
+    if table is None:
+        return text, None
+    named = re.compile(rb"^(\s*receptance\s*=\s*)([\"'])" + re.escape(table.name.encode()) + rb"\2", re.M)
+    kept, count = named.subn(rf'\g<1>"{_table_name(number)}"'.encode(), text)
+    if count != 1:
+        raise InputError(f'{path}: receptance: write it on a line of its own, receptance = "{table.name}"')
+    return kept, table.read_bytes()
 
 
 def changed_files(folder: Path) -> list[str]:

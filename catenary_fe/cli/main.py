@@ -14,6 +14,7 @@ import click
 from catenary_fe.cli.cases import cases
 from catenary_fe.cli.design import form, info, modes, static
 from catenary_fe.cli.layouts import layout
+from catenary_fe.cli.pantograph import pantograph
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
 from catenary_fe.cli.run import run
 from catenary_fe.cli.stored import compare, export, film, report, rerun, view, waves
@@ -56,6 +57,7 @@ def commands() -> None:
 _SHORT_HELP = {
     info: "Check a layout: wave speeds, masses, drawing.",
     layout: "Make layouts, from tables or by rules.",
+    pantograph: "Own frequencies, receptance and static force of a pantograph.",
     form: "Dropper lengths and the static shape.",
     static: "Elasticity along the line.",
     cases: "The line under wind, ice and temperature.",

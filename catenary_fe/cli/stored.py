@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from catenary_fe.results import Run
     from catenary_fe.statics import Shape
 
-INPUTS = ("layout.toml", "pantograph_*.toml", "inputs.json")
+INPUTS = ("layout.toml", "pantograph_*.toml", "pantograph_*_receptance.csv", "conditions.toml", "inputs.json")
 TOLERANCE = 0.1  # [N] of mean and standard deviation
 
 

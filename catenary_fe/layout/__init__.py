@@ -25,12 +25,10 @@ from catenary_fe.layout.line import Line, join_sections, read_catenary
 from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.pantograph import (
-    AerodynamicForce,
     AnyPantograph,
     AttachedPantograph,
     DescribedPantograph,
     ElasticPantograph,
-    Panhead,
     Pantograph,
     Stage,
     recorded_pantograph,
@@ -46,6 +44,8 @@ from catenary_fe.layout.parts import (
     Termination,
     Wire,
 )
+from catenary_fe.layout.pushed import AerodynamicForce, Panhead
+from catenary_fe.layout.receptance import ReceptancePantograph
 from catenary_fe.layout.rules import layout_warnings
 from catenary_fe.layout.terminations import ends_in_words
 from catenary_fe.layout.writer import layout_text
@@ -76,6 +76,7 @@ __all__ = [
     "Pantograph",
     "PowerSystem",
     "RayleighDamping",
+    "ReceptancePantograph",
     "RunInterrupted",
     "SectionEnd",
     "SolverError",

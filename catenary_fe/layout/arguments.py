@@ -143,6 +143,7 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "Run": ("a run", "simulate makes one, load_run reads one"),
     "LineTest": ("a line test", "read_line_test reads files, LineTest(passes=[...]) makes one"),
     "LineTestComparison": ("a comparison with a line test", "compare_with_line_test makes one"),
+    "PantographResponse": ("the response of a pantograph", "pantograph_response(pantograph) gives it"),
     "Modes": ("modes of a line", "give solve_modes(shape)"),
     "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
     "TimeSettings": ("TimeSettings", "give TimeSettings(step=...), or leave it out"),
@@ -153,8 +154,8 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "WireProblem": ("a WireProblem", "give WireProblem(wire=..., x=...)"),
 }
 _UNIONS = {
-    "DescribedPantograph": ("Pantograph", "ElasticPantograph"),
-    "AnyPantograph": ("Pantograph", "ElasticPantograph", "AttachedPantograph"),
+    "DescribedPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph"),
+    "AnyPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph", "AttachedPantograph"),
 }
 _PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", lambda v: isinstance(v, Real) and not isinstance(v, bool | np.bool_)),

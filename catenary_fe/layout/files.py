@@ -25,7 +25,7 @@ from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import join_sections
 from catenary_fe.layout.overlap import Overlap
-from catenary_fe.layout.pantograph import DescribedPantograph, ElasticPantograph, Pantograph
+from catenary_fe.layout.pantograph import DescribedPantograph, kind_of
 from catenary_fe.layout.parameters import (
     Lateral,
     NonEmpty,
@@ -37,6 +37,7 @@ from catenary_fe.layout.parameters import (
     problem_lines,
 )
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, Support
+from catenary_fe.layout.receptance import read_receptance, receptance_table_of
 from catenary_fe.layout.terminations import Loss
 from catenary_fe.layout.toml import read_toml
 
@@ -316,15 +317,17 @@ def _further_faults(record: dict[str, Any], error: ValidationError) -> tuple[str
 def load_pantograph(name_or_path: str | Path) -> DescribedPantograph:
     """A pantograph from a TOML file, or from the library by its name.
 
-    A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph.
+    A file with ``force`` and ``stiffness``, or with a ``law``, is that of an elastic pantograph; one with a
+    ``receptance`` names a table beside it, which is read along.
 
     Raises InputError, one line for each fault that the file has, or the near names of the library.
     """
     path = Path(name_or_path)
     if path.suffix == ".toml" or (os.path.exists(path) and not os.path.isdir(path)):
         record = read_toml(path, "pantograph")
-        elastic = "stages" not in record and not record.keys().isdisjoint({"force", "stiffness", "law"})
-        model = ElasticPantograph if elastic else Pantograph
+        model = kind_of(record)
+        if table := receptance_table_of(path, record):
+            record["receptance"] = read_receptance(table)
         try:
             return model.model_validate(record)
         except ValidationError as error:
@@ -338,5 +341,5 @@ def layout_schema() -> dict[str, Any]:
 
 
 def pantograph_schema() -> dict[str, Any]:
-    """JSON Schema of a pantograph file, of masses or elastic."""
+    """JSON Schema of a pantograph file: of masses, of a receptance, or elastic."""
     return TypeAdapter(DescribedPantograph).json_schema() | {"title": "catenary_fe pantograph"}

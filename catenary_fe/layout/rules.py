@@ -10,7 +10,7 @@ from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.equipment import equipment_faults
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.installed import change_faults
-from catenary_fe.layout.pantograph import AnyPantograph
+from catenary_fe.layout.pantograph import AnyPantograph, Pantograph
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.terminations import termination_faults
 
@@ -326,9 +326,10 @@ def pantograph_warnings(pantograph: AnyPantograph, speed: float) -> list[str]:
             f"{name}: pushes with {force:.4g} N at {3.6 * speed:g} km/h; pantographs push with 20 to 400 N:"
             " look at the units of uplift_force and aerodynamic_force"
         )
-    if not pantograph.stages:
+    found += pantograph.fit_warnings()
+    if not isinstance(pantograph, Pantograph):
         return found
-    masses = [stage.mass for stage in pantograph.stages]
+    masses = pantograph.masses
     if not 1 <= masses[0] <= 60 or sum(masses) > 300:
         found.append(
             f"{name}: masses of {', '.join(f'{m:g}' for m in masses)} kg, head first: heads have 1 to 60 kg,"

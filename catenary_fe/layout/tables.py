@@ -8,6 +8,7 @@ import io
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,11 @@ FACTORS: dict[str, dict[str, float]] = {
     "mass": {"kg": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
     "speed": {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6},
+    "frequency": {"Hz": 1.0},
+    "receptance": {"m/N": 1.0, "mm/N": 1e-3, "um/N": 1e-6},
+    "angle": {"deg": 1.0, "rad": 180 / pi},
 }
-"""From units to SI, by kind of quantity."""
+"""From units to SI, by kind of quantity; angles to degrees."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?\d+,\d+")
 _YES = {"yes": True, "true": True, "1": True, "no": False, "false": False, "0": False}
@@ -35,7 +39,7 @@ ROUNDED = 2.5e-3  # [m] by which columns may differ that say the same, both roun
 class Column:
     """What a column holds.
 
-    kind : "length", "force", "stiffness", "mass": a number with a unit; "whole", "text", "yes": without one;
+    kind : of :data:`FACTORS`: a number with a unit; "whole", "text", "yes": without one;
         "result": what follows from a layout, which is not read
     least : smallest number that is allowed
     words : texts that are allowed; empty: any
@@ -296,8 +300,8 @@ def _heading_fault(name: str, unit: str, columns: Mapping[str, Column]) -> str |
 
 
 def _example(name: str, column: Column) -> str:
-    units = {"length": "m", "force": "N", "stiffness": "N_per_m", "mass": "kg"}
-    return f"{name}_{units[column.kind]}" if column.kind in units else name
+    units = FACTORS.get(column.kind)
+    return f"{name}_{next(iter(units)).replace('/', '_per_')}" if units else name
 
 
 def _value(cell: str, column: Column, unit: str) -> Any:
@@ -311,7 +315,7 @@ def _value(cell: str, column: Column, unit: str) -> Any:
     if column.least is not None and value < column.least:
         raise ValueError(f"{cell}: must be at least {column.least:g}")
     factor = FACTORS[column.kind][unit]
-    return value if factor == 1 else round(value * factor, 12)
+    return value if factor == 1 else float(f"{value * factor:.12g}")
 
 
 def number_in(cell: str) -> float:

@@ -25,6 +25,7 @@ from catenary_fe.results.criteria import (
 )
 from catenary_fe.results.export import history_tables, save_catenary, write_tables
 from catenary_fe.results.modes import ModalRun, ModeKind, Modes, WireShapes
+from catenary_fe.results.pantograph import PantographResponse, pantograph_response, receptance_table
 from catenary_fe.results.quality import run_checks
 from catenary_fe.results.run import Run, load_run
 from catenary_fe.results.signal import band_pass, low_pass, spectrum
@@ -33,8 +34,10 @@ from catenary_fe.results.wires import Elasticity, WireHistory
 
 __all__ = [
     "Check", "Column", "Criterion", "Elasticity", "ForceStatistics", "InputDifference", "KeyFigures",
-    "ModalRun", "ModeKind", "Modes", "Run", "WireHistory", "WireShapes", "band_pass", "checks_in_words",
-    "criteria_in_words", "criteria_rows", "excess", "failed_checks", "force_statistics", "governing",
+    "ModalRun", "ModeKind", "Modes", "PantographResponse", "Run", "WireHistory", "WireShapes",
+    "band_pass", "checks_in_words", "criteria_in_words", "criteria_rows", "excess", "failed_checks",
+    "force_statistics", "governing",
     "history_tables", "input_differences", "judge", "key_figures", "labels", "load_run", "low_pass",
-    "missed", "run_checks", "save_catenary", "spectrum", "write_tables",
+    "missed", "pantograph_response", "receptance_table", "run_checks", "save_catenary", "spectrum",
+    "write_tables",
 ]  # fmt: skip

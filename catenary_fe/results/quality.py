@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, Line
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.layout.terminations import WireField
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
@@ -63,18 +64,19 @@ def run_checks(run: Run) -> tuple[Check, ...]:
 
 
 def _lumped(run: Run) -> list[tuple[int, AnyPantograph]]:
-    return [(i, p) for i, p in enumerate(run.pantographs) if p.stages]
+    return [(i, p) for i, p in enumerate(run.pantographs) if p.masses]
 
 
 def _contact_stiffness(pantograph: AnyPantograph) -> float:
     return pantograph.assemble(spatial=False).contact.stiffness
 
 
-def _base(run: Run, number: int, pantograph: AnyPantograph) -> Floats:
-    """[m], shape (times,): height at which a pantograph's lowest spring is force-free."""
-    if pantograph.base == "rail":
-        return np.full(run.time.size, run.catenary.contact_wire_height)
-    return run.catenary.design_line(run.data["position"].values[number])
+def _risen(run: Run, number: int, body: Substructure) -> Floats:
+    """[m], shape (times,): height above the nominal one at which a pantograph's base spring is force-free."""
+    if not body.follows:
+        return np.zeros(run.time.size)
+    risen = run.catenary.design_line(run.data["position"].values[number]) - run.catenary.contact_wire_height
+    return np.asarray(risen)
 
 
 def _name(run: Run, pantograph: int) -> str:
@@ -114,25 +116,24 @@ def _penetration(run: Run) -> Iterator[Check]:
 
 
 def _force_balance(run: Run) -> Iterator[Check]:
-    """Newton's law over the whole run: uplift, base spring and damper, less the contact force, is momentum.
+    """Newton's law over the whole run: uplift, springs and dampers of the base, less the contact force.
 
-    The histories are those of the steps' ends; what is left of a sound run is the rounding of the last
-    velocity, far below half a per cent of the uplift (0.02 % at most in the EN 50318:2002 runs).
+    Together they are the momentum gained. The histories are those of the steps' ends; what is left of a sound
+    run is the rounding of the last velocity, far below half a per cent of the uplift (0.02 % at most in the
+    EN 50318:2002 runs).
     """
     if run.time.size < 3:
         return
     found = []
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        masses, heights = _chain(run, i, pantograph)
-        lowest, duration = pantograph.stages[-1], float(run.time[-1])
-        shared = len(pantograph.stages) == 1  # by strips, the only spring
-        above = heights.mean(axis=0) if shared else heights[-1]
-        pressed = lowest.stiffness * (above - _base(run, i, pantograph))
+        body, heights, risen = _motion(run, i, pantograph)
+        duration = float(run.time[-1])
+        pressed = body.stiffness.sum(axis=0) @ heights - body.base_load.sum() * risen
         pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
-        pushed -= lowest.damping * (above[-1] - above[0])
+        pushed -= body.damping.sum(axis=0) @ (heights[:, -1] - heights[:, 0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
-        gained = masses @ velocity
+        gained = body.mass.sum(axis=0) @ velocity
         found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
     if found:
         value, name = _worst(found)
@@ -143,17 +144,18 @@ def _force_balance(run: Run) -> Iterator[Check]:
         yield Check("force balance", value, "%", "at most", 100 * IMBALANCE, text)
 
 
-def _chain(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Floats, Floats]:
-    """Masses [kg] of a pantograph, strips first, and their heights [m], shape (masses, times)."""
-    strips = pantograph.head.strips if pantograph.head else 1
-    first, *others = pantograph.stages
-    masses = np.array([first.mass / strips] * strips + [stage.mass for stage in others])
-    heights: Floats = run.data["mass_height"].values[number, : masses.size]
-    return masses, heights
+def _motion(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Substructure, Floats, Floats]:
+    """A pantograph's matrices in the plane, and its masses' heights, shape (masses, times), and its base's.
+
+    Both [m] above the nominal contact wire height.
+    """
+    body = pantograph.assemble(spatial=False)
+    heights = run.data["mass_height"].values[number, : body.size] - run.catenary.contact_wire_height
+    return body, heights, _risen(run, number, body)
 
 
 def _pantograph_energy(run: Run) -> Iterator[Check]:
-    """Uplift and contact force work on the stages; springs store it, dampers take it, masses move with it.
+    """Uplift, contact force and base work on the masses; springs store it, dampers take it, masses keep it.
 
     From the histories alone, so that it is there whatever integrated the run. Work of a step is the mean of a
     force at its ends along the displacement. Of heads with several strips, or that roll, the single forces
@@ -161,24 +163,17 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
     """
     found = []
     for i, pantograph in _lumped(run):
-        head = pantograph.head
-        rolls = run.catenary.is_spatial and head and head.spring_distance
-        if run.time.size < 5 or rolls or (head and head.strips > 1):
+        rolls = run.catenary.is_spatial and pantograph.panhead.spring_distance
+        if run.time.size < 5 or rolls or pantograph.panhead.strips > 1:
             continue
-        masses, heights = _chain(run, i, pantograph)
+        body, heights, risen = _motion(run, i, pantograph)
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        base = _base(run, i, pantograph)  # its springs' end; dampers stand on the vehicle's roof
-        joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - base])
-        rates = np.diff(np.vstack([joints[:-1], heights[-1:]]))
-        stiffness = np.array([stage.stiffness for stage in pantograph.stages])
-        damping = np.array([stage.damping for stage in pantograph.stages])
         moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
         pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
-        lost = damping @ rates**2 / run.step + stiffness[-1] * (
-            joints[-1, 1:] + joints[-1, :-1]
-        ) / 2 * np.diff(base)
-        stored = (masses @ velocity**2 + stiffness @ joints**2) / 2
-        balance = np.cumsum(pushed + uplift * moved[-1] - lost) - (stored[1:] - stored[0])
+        lifted = (uplift * body.load) @ moved + body.base_load @ moved * (risen[1:] + risen[:-1]) / 2
+        lost = (moved * (body.damping @ moved)).sum(axis=0) / run.step
+        stored = (velocity * (body.mass @ velocity) + heights * (body.stiffness @ heights)).sum(axis=0) / 2
+        balance = np.cumsum(pushed + lifted - lost) - (stored[1:] - stored[0])
         share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
         found.append((100 * float(share), _name(run, i)))
     if found:
@@ -200,7 +195,7 @@ def _energy_balance(run: Run) -> Iterator[Check]:
         return
     missing, work = np.abs(run.missing_energy).max(), np.abs(run.data["driven_work"].values).max()
     for i, pantograph in _lumped(run):  # the energy's potential has the uplift's work in it
-        lowest = _chain(run, i, pantograph)[1][-1]
+        lowest = _motion(run, i, pantograph)[1][-1]
         work += float(run.data["uplift_force"].values[i]) * np.abs(lowest - lowest[0]).max()
     text = "share of the work on wires and pantographs that is missing; take a smaller time step or tolerance"
     share = 100 * float(missing / max(work, 1e-9))
@@ -298,7 +293,7 @@ def _steps_per_period(run: Run) -> Iterator[Check]:
     """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
     found = [(CUT_OFF, "the filter's cut-off")]
     for i, p in _lumped(run):
-        resonance = sqrt(_contact_stiffness(p) / p.stages[0].mass) / (2 * pi)
+        resonance = sqrt(_contact_stiffness(p) / p.masses[0]) / (2 * pi)
         found.append((resonance, f"the resonance of the head of {_name(run, i)} on its contact spring"))
     highest, what = max(found)
     text = (

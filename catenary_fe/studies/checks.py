@@ -46,7 +46,7 @@ def check_heads(shape: Shape, pantographs: Sequence[AnyPantograph], start: float
     wires, faults = shape.contact_wires, []
     several = isinstance(shape, LineShape)
     for pantograph in pantographs:
-        if not pantograph.stages:
+        if not pantograph.masses:
             if len(shape.catenary.contact_wire_offsets) > 1:
                 faults.append(
                     f"{pantograph.name}: an elastic pantograph has one force for one contact wire, the layout"

@@ -61,7 +61,7 @@ def demand(
     shapes : stored shapes of the whole wires
     slots : runs side by side in one process
     """
-    masses = max(len(p.stages) for p in pantographs)
+    masses = max(len(p.masses) for p in pantographs)
     each = len(pantographs) * (3 + max(masses, 1)) + len(catenary.droppers) + len(catenary.supports) + 1
     nodes = int(mesh.first_nodes[-1])
     histories, wires = 8.0 * each * (steps + 1), 4.0 * nodes * shapes

@@ -1,4 +1,4 @@
-"""Closed forms and the method of lines for strings and tensioned beams, and gusts; numpy and scipy alone.
+"""Closed forms and the method of lines for strings and beams, gusts, receptances; numpy and scipy alone.
 
 Paper: "Selected problems of wave phenomena in catenaries", its equations by number, misprints corrected and
 named where they are. SI units, deflections positive upwards, x and t scalars or arrays that broadcast; an
@@ -39,6 +39,7 @@ from catenary_fe.theory.pinned_wire import (
     moving_force_series,
     reflected_waves,
 )
+from catenary_fe.theory.receptance import MassChain, fit_receptance
 from catenary_fe.theory.scattering import (
     Scattering,
     amplification_coefficient,
@@ -66,6 +67,7 @@ __all__ = [
     "Gusts",
     "HarmonicForce",
     "LinesResult",
+    "MassChain",
     "MovingForce",
     "Scattering",
     "SlidingOscillator",
@@ -76,6 +78,7 @@ __all__ = [
     "distributed_load",
     "doppler_factor",
     "elastic_pantograph_force",
+    "fit_receptance",
     "force_at_rest",
     "generate_gusts",
     "group_velocity",

@@ -12,6 +12,7 @@ from catenary_fe.views.dxf import write_dxf
 from catenary_fe.views.film import film
 from catenary_fe.views.layout import plot_layout, plot_plan
 from catenary_fe.views.line_test import plot_line_test
+from catenary_fe.views.pantograph import plot_pantograph
 from catenary_fe.views.run import (
     plot_contact_force,
     plot_contact_lateral,
@@ -30,7 +31,7 @@ __all__ = [
     "plot_dropper_forces", "plot_elasticity", "plot_energy",
     "plot_family", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
     "plot_layout", "plot_line_test",
-    "plot_mode", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum", "plot_static_shape",
-    "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
+    "plot_mode", "plot_pantograph", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum",
+    "plot_static_shape", "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
     "plot_sweep_uplift", "plot_uplift_comparison", "write_dxf",
 ]  # fmt: skip

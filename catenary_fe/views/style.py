@@ -111,7 +111,7 @@ def new_panels(size: tuple[float, float], heights: Sequence[float]) -> list[Axes
     heights : of the axes, relative to each other
     """
     figure = Picture(figsize=size, layout="constrained")
-    return list(figure.subplots(len(heights), 1, height_ratios=list(heights)))
+    return list(figure.subplots(len(heights), 1, height_ratios=list(heights), squeeze=False)[:, 0])
 
 
 def finish(ax: Axes, x: str, y: str, title: str) -> Axes:

@@ -99,7 +99,7 @@ def test_examples_are_files_that_load(key_tables):
         elif path.stem.startswith("conditions"):
             loaded = cf.load_conditions(path)
         else:
-            loaded = cf.load_pantograph(path) if "stages" in record else cf.ElasticPantograph(**record)
+            loaded = cf.load_pantograph(path)
         assert loaded.name == record["name"]
 
 

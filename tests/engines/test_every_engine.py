@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
+from catenary_fe.theory import MassChain
 
 LAYOUTS = Path(__file__).parents[2] / "models" / "layouts"
 SPAN, SPEED = 24.0, 75.0
@@ -82,6 +83,18 @@ TWO_STAGES = cf.library.pantograph("EN 50318:2002")
 THREE_STAGES = cf.library.pantograph("EN 50318:2018 AC").replace(mean_force=None, uplift_force=140.0)
 HEAD = cf.Panhead(width=1.6, strips=2, strip_distance=0.4, spring_distance=0.9)
 ONE_STAGE = cf.Pantograph(stages=[cf.Stage(mass=12.0, stiffness=200.0, damping=80.0)], uplift_force=100.0)
+# a damper from the head to the base, and one over the middle mass, which no chain of stages has
+DAMPERS = np.array([[55.0, -40.0, -5.0], [-40.0, 45.0, -5.0], [-5.0, -5.0, 100.0]])
+FREQUENCIES = np.geomspace(0.1, 50.0, 60)
+YIELDS = MassChain(np.array([7.5, 9.0, 6.0]), np.array([7000.0, 15500.0, 160.0]), DAMPERS).receptance(
+    FREQUENCIES
+)
+RECEPTANCE = cf.ReceptancePantograph(
+    receptance=list(
+        zip(FREQUENCIES.tolist(), abs(YIELDS).tolist(), np.angle(YIELDS, deg=True).tolist(), strict=True)
+    ),
+    uplift_force=140.0,
+)
 LAW = ((0.0, 200.0), (0.02, 140.0), (0.06, 0.0))
 
 PANTOGRAPHS = {
@@ -91,6 +104,7 @@ PANTOGRAPHS = {
     "rolling head, two strips": [THREE_STAGES.replace(head=HEAD)],
     "contact lost": [TWO_STAGES.replace(uplift_force=25.0)],
     "contact damping": [THREE_STAGES.replace(head=HEAD, contact_damping=20.0)],
+    "receptance": [RECEPTANCE],
     "elastic, straight law": [cf.ElasticPantograph(force=150.0, stiffness=500.0)],
     "elastic, law of points": [cf.ElasticPantograph(law=LAW)],
     "two pantographs": [TWO_STAGES, THREE_STAGES],

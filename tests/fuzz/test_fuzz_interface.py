@@ -79,6 +79,17 @@ def line_test(name):
 CALLS = {
     "load_catenary": (lambda g, b: cf.load_catenary(b), PATH),
     "load_pantograph": (lambda g, b: cf.load_pantograph(b), PATH),
+    "pantograph_response": (lambda g, b: cf.pantograph_response(b), OBJECT),
+    "pantograph_response: frequencies": (
+        lambda g, b: cf.pantograph_response(g.head, b), (*NUMBERS, [], [0.0], [-1.0], 3.0, ARRAY)
+    ),
+    "pantograph_response: speed": (lambda g, b: cf.pantograph_response(g.head, speed=b), (*NUMBER, -1.0)),
+    "receptance_table": (lambda g, b: cf.receptance_table(b, "head.csv"), OBJECT),
+    "receptance_table: path": (lambda g, b: cf.receptance_table(g.head, b), PATH),
+    "ReceptancePantograph": (
+        lambda g, b: cf.ReceptancePantograph(receptance=b, uplift_force=90.0),
+        (*NUMBERS, "head.csv", [], [[1.0, 1e-3, -90.0]], [[1.0, 1e-3, -90.0]] * 20),
+    ),
     "load_conditions": (lambda g, b: cf.load_conditions(b), PATH),
     "settle": (lambda g, b: cf.settle(b, cf.Conditions()), OBJECT),
     "settle: conditions": (lambda g, b: cf.settle(g.shape, b), (*OBJECT[:3], *OBJECT[4:], [3], [None])),
@@ -240,6 +251,7 @@ CALLS = {
     "plot_run_waves: spans": (lambda g, b: views.plot_run_waves(g.run, spans=b), SPANS),
     "plot_run_waves: quantity": (lambda g, b: views.plot_run_waves(g.run, quantity=b), CHOICE),
     "plot_run_waves: wire": (lambda g, b: views.plot_run_waves(g.run, wire=b), CHOICE),
+    "plot_pantograph": (lambda g, b: views.plot_pantograph(b), OBJECT),
     "plot_line_test": (lambda g, b: views.plot_line_test(b), OBJECT),
     "plot_force_spectrum": (lambda g, b: views.plot_force_spectrum(g.run, up_to=b), POSITIVE),
     "film: spans": (lambda g, b: film(g.run, "x.gif", spans=b), SPANS),

@@ -145,6 +145,7 @@ ELASTIC: dict[str, Any] = {
     "stiffness": 900.0,
     "law": [[0.0, 150.0], [0.1, 90.0]],
 }
+RECEPTANCE: dict[str, Any] = {"receptance": "", "order": 1, "static_stiffness": 0.0, "head_width": 1.9}
 
 
 def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Iterator[str]:
@@ -162,7 +163,7 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
 
 
 @pytest.mark.parametrize(
-    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC)]
+    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC | RECEPTANCE)]
 )
 def test_a_value_is_known_for_every_key(schema, known):
     several = ("further_sections.", "overlap.")  # below
@@ -345,3 +346,16 @@ def test_a_key_of_an_elastic_pantograph_acts(key):
     if key == "law":  # beside a force, it is refused
         with pytest.raises(cf.InputError, match="give exactly one"):
             cf.ElasticPantograph(**base, law=ELASTIC["law"])
+
+
+@pytest.mark.parametrize(
+    "key", ["receptance", "order", "static_stiffness", "head_width", "base", "uplift_force"]
+)
+def test_a_key_of_a_pantograph_by_its_receptance_acts(key):
+    frequencies = [0.2 * 1.2**n for n in range(30)]
+    response = cf.pantograph_response(cf.Pantograph(**(PUSHED | {"head": None})), frequencies).as_dict()
+    rows = [list(row) for row in zip(*response["receptance"].values(), strict=True)]
+    base: dict[str, Any] = {"receptance": rows, "uplift_force": 100.0}
+    values = RECEPTANCE | {"receptance": [[f, 0.9 * z, phase] for f, z, phase in rows]} | PANTOGRAPH
+    before, after = (cf.ReceptancePantograph(**record) for record in (base, base | {key: values[key]}))
+    assert (*known_of(before), before.panhead) != (*known_of(after), after.panhead)
