@@ -89,6 +89,16 @@ class Law:
             return float(force(u)), float(force(u, 1)), float(force.antiderivative()(u))
         return 0.0, 0.0, 0.0
 
+    def push(self, u: Floats, w: Floats) -> Floats:
+        """[N], shape of u and w: force at elongations [m] and their rates [m/s], where these alone decide.
+
+        They do of stops and dampers.
+        """
+        if self.kind == STOP:
+            limit, stiffness = self.values
+            return stiffness * np.maximum(u - limit, 0.0)
+        return self.values[0] * np.maximum(w, 0.0)
+
     def kinetic(self, u: float, w: float) -> float:
         """[J] beyond that of the linear mass, at an elongation [m] and its rate [m/s]."""
         return float(self._cubic(0)(u)) * w**2 / 2 if self.kind == FRAME else 0.0

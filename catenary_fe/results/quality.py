@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, Line
-from catenary_fe.layout.substructure import Substructure
+from catenary_fe.layout.substructure import DAMPER, STOP, Substructure
 from catenary_fe.layout.terminations import WireField
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
@@ -128,8 +128,11 @@ def _force_balance(run: Run) -> Iterator[Check]:
     for i, pantograph in _lumped(run):
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         body, heights, risen = _motion(run, i, pantograph)
+        if not _follows_from_motion(body):
+            continue
         duration = float(run.time[-1])
         pressed = body.stiffness.sum(axis=0) @ heights - body.base_load.sum() * risen
+        pressed = pressed + _law_forces(body, heights, run.step).sum(axis=0)
         pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
         pushed -= body.damping.sum(axis=0) @ (heights[:, -1] - heights[:, 0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
@@ -154,6 +157,20 @@ def _motion(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Substruct
     return body, heights, _risen(run, number, body)
 
 
+def _follows_from_motion(body: Substructure) -> bool:
+    """Whether all forces in a pantograph follow from places and rates: dry friction's at rest does not."""
+    return all(law.kind in (STOP, DAMPER) for law in body.laws)
+
+
+def _law_forces(body: Substructure, heights: Floats, step: float) -> Floats:
+    """[N], shape of heights: forces against the coordinates that are not linear."""
+    forces, rates = np.zeros_like(heights), np.gradient(heights, step, axis=1) if body.laws else heights
+    for law in body.laws:
+        row = np.array(law.row)
+        forces += np.outer(row, law.push(row @ heights, row @ rates))
+    return forces
+
+
 def _pantograph_energy(run: Run) -> Iterator[Check]:
     """Uplift, contact force and base work on the masses; springs store it, dampers take it, masses keep it.
 
@@ -167,11 +184,15 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
         if run.time.size < 5 or rolls or pantograph.panhead.strips > 1:
             continue
         body, heights, risen = _motion(run, i, pantograph)
+        if not _follows_from_motion(body):
+            continue
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
         moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
         pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
         lifted = (uplift * body.load) @ moved + body.base_load @ moved * (risen[1:] + risen[:-1]) / 2
         lost = (moved * (body.damping @ moved)).sum(axis=0) / run.step
+        laws = _law_forces(body, heights, run.step)
+        lost = lost + (moved * (laws[:, 1:] + laws[:, :-1])).sum(axis=0) / 2
         stored = (velocity * (body.mass @ velocity) + heights * (body.stiffness @ heights)).sum(axis=0) / 2
         balance = np.cumsum(pushed + lifted - lost) - (stored[1:] - stored[0])
         share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
