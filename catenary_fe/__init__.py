@@ -92,7 +92,7 @@ if TYPE_CHECKING:
         settle,
     )
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
-    from catenary_fe.studies import modal_run, simulate, solve_modes
+    from catenary_fe.studies import Session, modal_run, simulate, solve_modes, stepping
     from catenary_fe.studies.single_wire import run_wire
 
 # loaded on first use: importing the package stays quick
@@ -136,6 +136,7 @@ _ROOMS = {
         "read_line_test",
     ),
     "studies.simulate": ("simulate",),
+    "studies.stepping": ("Session", "stepping"),
     "layout": (
         "AerodynamicForce",
         "AsBuilt",
@@ -221,6 +222,7 @@ __all__ = [
     "Run",
     "RunInterrupted",
     "SectionEnd",
+    "Session",
     "Shape",
     "SlidingPantograph",
     "SolverError",
@@ -269,6 +271,7 @@ __all__ = [
     "simulate",
     "solve_modes",
     "solve_statics",
+    "stepping",
     "target_mean_force",
 ]
 

@@ -5,9 +5,11 @@ from catenary_fe.engines.modal.run import modal_run
 from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
 from catenary_fe.studies.rerun import Rerun, rerun
 from catenary_fe.studies.simulate import simulate
+from catenary_fe.studies.stepping import Session, stepping
 
 __all__ = [
     "Rerun",
+    "Session",
     "StaticState",
     "elasticity",
     "modal_run",
@@ -15,4 +17,5 @@ __all__ = [
     "simulate",
     "solve_modes",
     "solve_statics",
+    "stepping",
 ]

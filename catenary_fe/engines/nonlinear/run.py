@@ -156,6 +156,52 @@ class NonlinearRun:
         q, v = wires.q + scheme.b * wires.x, wires.v + scheme.g * wires.x
         return q[rows, 0], v[rows, 0]
 
+    @property
+    def placed(self) -> list[PlacedPantograph]:
+        """The pantographs where they started."""
+        return self._start.pantographs
+
+    @property
+    def speed(self) -> float:
+        """[m/s] at which it started."""
+        return self._start.speed
+
+    def push(self, uplifts: Floats) -> None:
+        """Lift the pantographs with other forces [N] from here on, shape (pantographs,)."""
+        for p, (placed, uplift) in enumerate(zip(self.placed, uplifts, strict=True)):
+            self.state.heads.load[0, p, : placed.body.size] = uplift * placed.body.load
+
+    def drive(self, speed: float) -> None:
+        """Run on at another speed [m/s] from where the pantographs are; all sections are computed then."""
+        heads, time = self.state.heads, self._step * self.done
+        slower = heads.pace[0] - speed
+        heads.start[0] += slower * time
+        heads.place[0] += slower * time
+        heads.speed[0], heads.pace[0], self._all = speed, speed, True
+
+    def heads_in_motion(self) -> tuple[list[Floats], list[Floats], list[Floats]]:
+        """Places, velocities and accelerations of each pantograph's coordinates now."""
+        scheme, own = self._engine._scheme, self.state.pantographs
+        found: tuple[list[Floats], list[Floats], list[Floats]] = ([], [], [])
+        for p, placed in enumerate(self.placed):
+            part = (0, p, slice(placed.body.size))
+            x: Floats = own.x[part].copy()
+            for values, kept in zip(
+                (own.q[part] + scheme.b * x, own.v[part] + scheme.g * x, x), found, strict=True
+            ):
+                kept.append(values)
+        return found
+
+    def contact_forces(self) -> Floats:
+        """[N], shape (pantographs,), now."""
+        owner, force = self.state.heads.owner[0], self.state.work.force[0]
+        return np.array([force[owner == p].sum() for p in range(len(self.placed))])
+
+    def wire_heights(self) -> Floats:
+        """[m], shape (pantographs,), above the nominal contact wire height: of the lowest over each head."""
+        owner, heights = self.state.heads.owner[0], self.records.height[0, :, self.done]
+        return np.array([np.fmin.reduce(heights[owner == p]) for p in range(len(self.placed))])
+
     def take_up(self, checkpoint: Checkpoint | None) -> None:
         """Go on from what a checkpoint kept, if it kept anything."""
         if checkpoint and checkpoint.kept:

@@ -1,0 +1,227 @@
+"""Runs step by step: a script sets forces and speed as it goes, as active pantographs and co-simulation do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from catenary_fe.engines.history import FEWEST, History
+from catenary_fe.engines.nonlinear.run import NonlinearEngine, NonlinearRun
+from catenary_fe.engines.settings import TimeSettings
+from catenary_fe.engines.tension import INTERVAL
+from catenary_fe.fe.contact import place
+from catenary_fe.layout import AnyPantograph, InputError
+from catenary_fe.layout.arguments import checked, number, numbers, whole
+from catenary_fe.layout.conditions import Conditions, Effect
+from catenary_fe.layout.pantograph import check_pantographs
+from catenary_fe.results import Run
+from catenary_fe.statics import Shape, settle
+from catenary_fe.statics.newton import static_contact
+from catenary_fe.studies.checks import check_speed, plan_run
+from catenary_fe.studies.linearised import MeanForce, aimed
+from catenary_fe.studies.record import make_run
+
+Floats = NDArray[np.float64]
+
+STEERED = (
+    "computed step by step, with forces or speeds that a script set: they are not in this record; to repeat"
+    " the run, repeat the script"
+)
+STRONGEST = 5000.0  # [N] of an uplift: beyond it the number is in another unit
+
+
+@checked
+def stepping(
+    shape: Shape,
+    pantographs: Sequence[AnyPantograph],
+    *,
+    speed: float,
+    positions: Sequence[float] | None = None,
+    time: TimeSettings | None = None,
+    duration: float | None = None,
+    conditions: Conditions | Sequence[Effect] | None = None,
+) -> Session:
+    """A nonlinear run that goes on step by step, by what a script asks for: see :class:`Session`.
+
+    Where nothing is asked for it is the run of :func:`simulate`, to the last bit; of pantographs with a mean
+    force it is that with the uplift that linearised runs find for it.
+
+    speed : [m/s] at the start
+    positions : [m] along the line at the start, one a pantograph; unset (for one): near the first support
+    time : settings of the time integration
+    duration : [s] that the session may last; unset: until the line's end is reached at this speed
+    conditions : the line is settled under them first, or effects
+
+    Raises InputError as :func:`simulate` does, SolverError without static contact.
+    """
+    check_pantographs(pantographs)
+    if conditions is not None:
+        shape = settle(shape, conditions)
+    time = time or TimeSettings()
+    case = plan_run(shape, pantographs, speed, positions, time, pantographs)
+    steps = case.steps(time.step)
+    if duration is not None:
+        steps = int(np.ceil(number("duration", duration, "s", least=FEWEST * time.step) / time.step - 1e-9))
+    force = MeanForce(pantographs, speed)
+    if force.sought:
+        force = aimed(shape, case, time)
+    placed = place(case.pantographs, force.uplifts, case.start, spatial=shape.system.spatial)
+    moved, placed = static_contact(shape.system, placed)
+    run = NonlinearRun(NonlinearEngine(shape.system, time), moved, placed, case.speed, steps)
+
+    def label(history: History, *, steered: bool) -> Run:
+        warnings = [*case.warnings, *([STEERED] if steered else [])]
+        return make_run(shape, case, force.uplifts, time, history, warnings, "nonlinear", scripted=steered)
+
+    return Session(run, steps, time.step, shape, label)
+
+
+class Session:
+    """A run under way, from :func:`stepping`. Its values are those at the end of the last step.
+
+    time : [s] since the start
+    position, speed : [m], shape (pantographs,), along the line; [m/s] of all of them
+    contact_force, wire_height : [N], [m], shape (pantographs,), of all strips and wires; above the rail
+    heights, velocities, accelerations : [m], [m/s], [m/s²], of each pantograph shape (coordinates,): its
+        masses from the head down, above the nominal contact wire height, then rolls [rad]
+    uplift_force : [N], shape (pantographs,), on the lowest masses
+    finished : whether the session has come to its end
+    """
+
+    def __init__(
+        self, run: NonlinearRun, steps: int, step: float, shape: Shape, label: Callable[..., Run]
+    ) -> None:
+        self._run, self._steps, self._step, self._shape, self._label = run, steps, step, shape, label
+        self._interval = max(1, round(INTERVAL / step))
+        self._steered = False
+        self._placed = run.placed
+        self.speed = run.speed
+        self.uplift_force: Floats = np.array([placed.uplift for placed in self._placed])
+        self._positions = np.zeros((len(self._placed), steps + 1))
+        self._positions[:, 0] = [placed.position for placed in self._placed]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Nothing is open: a session needs no end."""
+
+    @property
+    def time(self) -> float:
+        """[s] since the start."""
+        return self._step * self._run.done
+
+    @property
+    def finished(self) -> bool:
+        """Whether the session has come to its end."""
+        return self._run.done >= self._steps
+
+    @property
+    def position(self) -> Floats:
+        """[m], shape (pantographs,), along the line."""
+        return self._positions[:, self._run.done].copy()
+
+    @property
+    def contact_force(self) -> Floats:
+        """[N], shape (pantographs,), of all strips on all wires."""
+        return self._run.contact_forces()
+
+    @property
+    def wire_height(self) -> Floats:
+        """[m], shape (pantographs,), above the rail, of the wire over each head; the lower of several."""
+        return self._shape.catenary.contact_wire_height + self._run.wire_heights()
+
+    @property
+    def heights(self) -> list[Floats]:
+        """[m], of each pantograph shape (coordinates,)."""
+        return self._run.heads_in_motion()[0]
+
+    @property
+    def velocities(self) -> list[Floats]:
+        """[m/s], of each pantograph shape (coordinates,)."""
+        return self._run.heads_in_motion()[1]
+
+    @property
+    def accelerations(self) -> list[Floats]:
+        """[m/s²], of each pantograph shape (coordinates,)."""
+        return self._run.heads_in_motion()[2]
+
+    @checked
+    def step(
+        self, steps: int = 1, *, uplift_force: ArrayLike | None = None, speed: float | None = None
+    ) -> Floats:
+        """Take steps, and return the contact forces [N] at their end, shape (pantographs,).
+
+        uplift_force : [N] on the lowest masses from now on, one for all pantographs or one each; below 0 it
+            pulls the head down; unset: as before
+        speed : [m/s] from now on, 0 to stand still; unset: as before
+
+        Raises InputError for values in another unit and behind the session's end, SolverError where a step
+        does not converge.
+        """
+        steps = whole("steps", steps, least=1)
+        if self._run.done + steps > self._steps:
+            raise InputError(
+                f"step: {steps} more would end at {self._step * (self._run.done + steps):.4g} s, and the"
+                f" session lasts {self._step * self._steps:.4g} s; give stepping a longer duration"
+            )
+        if uplift_force is not None:
+            self._push(uplift_force)
+        if speed is not None and speed != self.speed:
+            self._drive(speed)
+        for _ in range(steps):
+            before = self._positions[:, self._run.done]
+            self._positions[:, self._run.done + 1] = before + self.speed * self._step
+            self._check_place(self._positions[:, self._run.done + 1])
+            self._run.advance(1, read=(self._run.done + 1) % self._interval == 0)
+        return self.contact_force
+
+    def run(self) -> Run:
+        """What was computed until now, as :func:`simulate` returns it: statistics, pictures, files.
+
+        Raises InputError where that is less than 50 steps.
+        """
+        if self._run.done < FEWEST:
+            raise InputError(f"run: {self._run.done} steps are too few to be judged; take at least {FEWEST}")
+        history = self._run.history()
+        if self._run.done < self._steps:
+            part = history.until(self._run.done)
+            assert part
+            history = part
+        if self._steered:  # energies count the work of the uplift that the run began with
+            none = np.array([])
+            own = self._positions[:, : history.time.size]
+            history = replace(history, position=own, energy=none, lost_work=None)
+        return self._label(history, steered=self._steered)
+
+    def _push(self, uplift_force: ArrayLike) -> None:
+        given = numbers("uplift_force", np.broadcast_to(uplift_force, self.uplift_force.shape).copy())
+        if np.abs(given).max() > STRONGEST:
+            raise InputError(
+                f"uplift_force = {given.tolist()} N: must be within ±{STRONGEST:g} N; look at the unit"
+            )
+        if (given != self.uplift_force).any():
+            self._steered, self.uplift_force = True, given
+            self._run.push(given)
+
+    def _drive(self, speed: float) -> None:
+        speed = number("speed", speed, "m/s", least=0.0)
+        if speed:
+            check_speed(speed)
+        self._steered, self.speed = True, speed
+        self._run.drive(speed)
+
+    def _check_place(self, position: Floats) -> None:
+        last = float(self._shape.catenary.length)
+        if position.max() > last:
+            raise InputError(
+                f"step: the first pantograph would be at {position.max():.2f} m, beyond the line's end at"
+                f" {last:g} m; stop before, or slow down"
+            )
