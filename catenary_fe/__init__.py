@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     )
     from catenary_fe.layout import (
         AerodynamicForce,
+        BaseMotion,
         Catenary,
         CatenaryError,
         Conditions,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
         StitchWire,
         Support,
         Termination,
+        VehicleSuspension,
         Wear,
         Wind,
         Wire,
@@ -129,6 +131,7 @@ _ROOMS = {
     "studies.simulate": ("simulate",),
     "layout": (
         "AerodynamicForce",
+        "BaseMotion",
         "Catenary",
         "CatenaryError",
         "Conditions",
@@ -154,6 +157,7 @@ _ROOMS = {
         "StitchWire",
         "Support",
         "Termination",
+        "VehicleSuspension",
         "Wear",
         "Wind",
         "Wire",
@@ -175,6 +179,7 @@ _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
 __all__ = [
     "AerodynamicForce",
+    "BaseMotion",
     "Catenary",
     "CatenaryError",
     "Conditions",
@@ -216,6 +221,7 @@ __all__ = [
     "Support",
     "Termination",
     "TimeSettings",
+    "VehicleSuspension",
     "Wear",
     "Wind",
     "Wire",

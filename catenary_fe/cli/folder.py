@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
+from catenary_fe.layout.conditions import conditions_text
 from catenary_fe.results.export import write_csv
 from catenary_fe.results.files import ASIDE, STRAY, atomic_write, cannot_be_written, locked, replace_all
 
@@ -226,7 +227,7 @@ class InputFiles:
                 path.read_bytes() if path.is_file() else name
                 for path, name in zip(paths, pantographs, strict=True)
             ),
-            Path(conditions).read_bytes() if conditions else None,
+            conditions_text(conditions) if conditions else None,
         )
 
     def keep(self, folder: Folder, run: Run, options: Sequence[str]) -> None:

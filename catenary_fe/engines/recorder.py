@@ -126,6 +126,14 @@ def make_pantographs(
         nominal=nominal,
         base_x=base.x,
         base_z=base.z,
+        base_stiffness=np.zeros(own),
+        base_damping=np.zeros(own),
+        base=Surfaces(
+            first=np.zeros(own[0] * own[1]),
+            step=np.ones(own[0] * own[1]),
+            last=np.full(own[0] * own[1], -1),
+            values=np.zeros((own[0] * own[1], sizes.steps + 1 if base.motions else 0, 2)),
+        ),
     )
     state = PantographState(
         q=np.zeros(own),
@@ -182,11 +190,14 @@ def load_pantographs(
         heads.inverse,
         heads.load,
         heads.base_load,
+        heads.base_stiffness,
+        heads.base_damping,
         heads.heave,
         heads.roll,
     ):
         array[slot] = 0.0
     heads.owner[slot] = -1
+    heads.base.last.reshape(heads.follows.shape)[slot] = -1
     for p, placed in enumerate(start.pantographs):
         body, m = placed.body, placed.body.size
         state.q[slot, p, :m] = placed.heights
@@ -195,6 +206,12 @@ def load_pantographs(
         heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
         heads.load[slot, p, :m] = placed.uplift * body.load
         heads.base_load[slot, p, :m] = body.base_load
+        if placed.base:
+            heads.base_stiffness[slot, p, :m] = body.base_stiffness
+            heads.base_damping[slot, p, :m] = body.base_damping
+            n, row = len(placed.base.values), slot * heads.follows.shape[1] + p
+            heads.base.step[row], heads.base.last[row] = placed.base.step, n - 1
+            heads.base.values[row, :n] = placed.base.values
         heads.follows[slot, p] = body.follows and heads.base_z.any()
         heads.place[slot, p] = placed.position
         records.masses[slot, p, :m, 0] = placed.heights

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from catenary_fe.fe.cable import scattered
-from catenary_fe.fe.contact import Irregularity
+from catenary_fe.fe.contact import EvenCurve
 from catenary_fe.fe.spring import Springs
 from catenary_fe.fe.system import System, TimeLoad, WireNodes
 from catenary_fe.layout import GRAVITY, InputError
@@ -39,6 +39,7 @@ def _with(system: System, effect: Effect) -> System:
     damping = np.concatenate([effect.damping(part) for part in parts], axis=1)
     strain = np.concatenate([effect.strain(part) for part in parts])
     load[-1] -= GRAVITY * mass
+    base, motion = system.base_line, effect.base_motion()
     return replace(
         system,
         cables=replace(system.cables, rest_strain=system.cables.rest_strain + strain),
@@ -48,6 +49,7 @@ def _with(system: System, effect: Effect) -> System:
         droppers=_lengthened(system, effect),
         wires=tuple(_with_surface(wire, effect) for wire in system.wires),
         time_loads=(*system.time_loads, *_time_loads(system, effect, parts, counts)),
+        base_line=replace(base, motions=(*base.motions, motion)) if motion else base,
     )
 
 
@@ -100,7 +102,7 @@ def _with_surface(wire: WireNodes, effect: Effect) -> WireNodes:
     before = wire.irregularity
     if before:
         values += before.values
-    return replace(wire, irregularity=Irregularity(float(x[0]), _SURFACE, values))
+    return replace(wire, irregularity=EvenCurve(float(x[0]), _SURFACE, values))
 
 
 def _lengthened(system: System, effect: Effect) -> Springs:

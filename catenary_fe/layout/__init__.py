@@ -4,11 +4,13 @@ from catenary_fe.layout import library
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.conditions import (
+    BaseMotion,
     Conditions,
     ContactWireIrregularity,
     Effect,
     Gusts,
     Ice,
+    VehicleSuspension,
     Wind,
     WirePart,
     conditions_schema,
@@ -54,6 +56,7 @@ __all__ = [
     "AerodynamicForce",
     "AnyPantograph",
     "AttachedPantograph",
+    "BaseMotion",
     "Catenary",
     "CatenaryError",
     "Conditions",
@@ -82,6 +85,7 @@ __all__ = [
     "StitchWire",
     "Support",
     "Termination",
+    "VehicleSuspension",
     "Wear",
     "Wind",
     "Wire",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-BASE = -1  # number of the base, which moves along the track at constant height
+BASE = -1  # number of the base, which moves along the track
 
 
 @dataclass(frozen=True)
@@ -150,15 +150,28 @@ class Substructure:
 
     @cached_property
     def base_load(self) -> Floats:
-        """[N/m], shape (size,): force on each coordinate for each metre that the base has risen.
+        """[N/m], shape (size,): force on each coordinate for each metre that the followed height has risen.
 
         Of the springs alone: a frame keeps its force over its working range, but its dampers feel it move.
         """
-        load = np.zeros(self.size)
-        for joint in self.joints:
-            if self.follows and joint.lower == BASE:
-                load[joint.upper] += joint.stiffness
-        return load
+        return self.base_stiffness * self.follows
+
+    @cached_property
+    def base_stiffness(self) -> Floats:
+        """[N/m], shape (size,): of the springs to the base, on each coordinate."""
+        return self._to_base([joint.stiffness for joint in self.joints])
+
+    @cached_property
+    def base_damping(self) -> Floats:
+        """[N s/m], shape (size,): of the dampers to the base, on each coordinate."""
+        return self._to_base([joint.damping for joint in self.joints])
+
+    def _to_base(self, values: list[float]) -> Floats:
+        found = np.zeros(self.size)
+        for joint, value in zip(self.joints, values, strict=True):
+            if joint.lower == BASE:
+                found[joint.upper] += value
+        return found
 
     def row(self, strip: Strip, lateral: float = 0.0) -> Floats:
         """Shape (size,): the strip's height over a place [m] to the left, as made of the coordinates."""

@@ -22,6 +22,8 @@ FACTORS: dict[str, dict[str, float]] = {
     "mass": {"kg": 1.0},
     "time": {"s": 1.0, "ms": 1e-3},
     "speed": {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6},
+    "temperature": {"°C": 1.0, "C": 1.0},
+    "load": {"N/m": 1.0, "kN/m": 1e3},
 }
 """From units to SI, by kind of quantity."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
@@ -35,8 +37,8 @@ ROUNDED = 2.5e-3  # [m] by which columns may differ that say the same, both roun
 class Column:
     """What a column holds.
 
-    kind : "length", "force", "stiffness", "mass": a number with a unit; "whole", "text", "yes": without one;
-        "result": what follows from a layout, which is not read
+    kind : "length", "force", "load" and others of ``FACTORS``: a number with a unit; "whole", "text", "yes":
+        without one; "result": what follows from a layout, which is not read
     least : smallest number that is allowed
     words : texts that are allowed; empty: any
     """
@@ -296,8 +298,8 @@ def _heading_fault(name: str, unit: str, columns: Mapping[str, Column]) -> str |
 
 
 def _example(name: str, column: Column) -> str:
-    units = {"length": "m", "force": "N", "stiffness": "N_per_m", "mass": "kg"}
-    return f"{name}_{units[column.kind]}" if column.kind in units else name
+    units = [unit.replace("/", "_per_") for unit in FACTORS.get(column.kind, ())]
+    return f"{name}_{units[0]}" if units else name
 
 
 def _value(cell: str, column: Column, unit: str) -> Any:

@@ -85,9 +85,7 @@ class _Contact:
             rows.append(row)
             rest.append(height)
             placed = pantographs[contact.pantograph]
-            base.append(
-                setup.base_line.under(placed.body, placed.position) if contact.strip.body is None else 0.0
-            )
+            base.append(setup.base_line.height_at_rest(placed) if contact.strip.body is None else 0.0)
             heads.append(pantographs[contact.pantograph].body.row(contact.strip, lateral))
         self._rows: Floats = np.array(rows)
         self._rest, self._heads, self._base = np.array(rest), heads, np.array(base)
@@ -134,8 +132,7 @@ class _Contact:
         for p, placed in enumerate(self._pantographs):
             part = slice(self._first[p], self._first[p + 1])
             A[part, part] = placed.body.stiffness
-            risen = self._setup.base_line.under(placed.body, placed.position)
-            right[part] = placed.uplift * placed.body.load + risen * placed.body.base_load
+            right[part] = self._setup.base_line.load_at_rest(placed)
         for j in range(count):
             self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ shifted))
         for i, dropper in enumerate(slack):

@@ -72,8 +72,9 @@ class NonlinearEngine:
         converge, not even much shorter ones, or the user interrupts.
         """
         placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
-        moved, placed = static_contact(self._system, placed)
         steps, interval = case.steps(self._time.step), max(1, round(INTERVAL / self._time.step))
+        placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
+        moved, placed = static_contact(self._system, placed)
         run = NonlinearRun(self, moved, placed, case.speed, steps)
         run.take_up(checkpoint)
         try:

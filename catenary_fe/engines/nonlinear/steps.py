@@ -21,6 +21,7 @@ from catenary_fe.engines.contact_solver import (
     lateral_place,
     place_base,
     place_head,
+    surface_at,
     update_contact,
     weigh_contact,
 )
@@ -256,7 +257,7 @@ def _base_work(
     energy: EnergyBalance,
     time: float,
 ) -> float:
-    """Work of the rising bases on the masses in the step that ends at a time [J]."""
+    """Work of the bases on the masses in the step that ends at a time, as forces on fixed springs [J]."""
     driven = 0.0
     for p in range(pantographs.x.shape[1]):
         risen = (base_height(heads, 0, p, time - scheme.h) + base_height(heads, 0, p, time)) / 2
@@ -264,6 +265,14 @@ def _base_work(
             for s in range(pantographs.x.shape[2]):
                 place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
                 driven += risen * heads.base_load[0, p, s] * (place - energy.heads[p, s])
+        if heads.base.last[p] >= 0:
+            before, early = surface_at(heads.base, p, time - scheme.h)
+            now, late = surface_at(heads.base, p, time)
+            for s in range(pantographs.x.shape[2]):
+                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
+                force = heads.base_stiffness[0, p, s] * (before + now) / 2
+                force += heads.base_damping[0, p, s] * (early + late) / 2
+                driven += force * (place - energy.heads[p, s])
     return driven
 
 
