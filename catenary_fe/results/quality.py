@@ -73,8 +73,13 @@ def _contact_stiffness(pantograph: AnyPantograph) -> float:
 def _base(run: Run, number: int, pantograph: AnyPantograph) -> Floats:
     """[m], shape (times,): height at which a pantograph's lowest spring is force-free."""
     if pantograph.base == "rail":
-        return np.full(run.time.size, run.catenary.contact_wire_height)
-    return run.catenary.design_line(run.data["position"].values[number])
+        return run.catenary.contact_wire_height + _roof(run, number)
+    return run.catenary.design_line(run.data["position"].values[number]) + _roof(run, number)
+
+
+def _roof(run: Run, number: int) -> Floats:
+    """[m], shape (times,): by how much a pantograph's base has moved up, with spring and damper."""
+    return run.data["base_height"].values[number] if "base_height" in run.data else 0 * run.time
 
 
 def _name(run: Run, pantograph: int) -> str:
@@ -130,7 +135,8 @@ def _force_balance(run: Run) -> Iterator[Check]:
         above = heights.mean(axis=0) if shared else heights[-1]
         pressed = lowest.stiffness * (above - _base(run, i, pantograph))
         pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
-        pushed -= lowest.damping * (above[-1] - above[0])
+        over = above - _roof(run, i)
+        pushed -= lowest.damping * (over[-1] - over[0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
         gained = masses @ velocity
         found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
@@ -167,16 +173,15 @@ def _pantograph_energy(run: Run) -> Iterator[Check]:
             continue
         masses, heights = _chain(run, i, pantograph)
         force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        base = _base(run, i, pantograph)  # its springs' end; dampers stand on the vehicle's roof
+        base, roof = _base(run, i, pantograph), _roof(run, i)  # the ends of springs, and of dampers
         joints = np.vstack([heights[:-1] - heights[1:], heights[-1:] - base])
-        rates = np.diff(np.vstack([joints[:-1], heights[-1:]]))
+        rates = np.diff(np.vstack([joints[:-1], heights[-1:] - roof]))
         stiffness = np.array([stage.stiffness for stage in pantograph.stages])
         damping = np.array([stage.damping for stage in pantograph.stages])
         moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
         pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
-        lost = damping @ rates**2 / run.step + stiffness[-1] * (
-            joints[-1, 1:] + joints[-1, :-1]
-        ) / 2 * np.diff(base)
+        lost = damping @ rates**2 / run.step + damping[-1] * rates[-1] / run.step * np.diff(roof)
+        lost += stiffness[-1] * (joints[-1, 1:] + joints[-1, :-1]) / 2 * np.diff(base)
         stored = (masses @ velocity**2 + stiffness @ joints**2) / 2
         balance = np.cumsum(pushed + uplift * moved[-1] - lost) - (stored[1:] - stored[0])
         share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
