@@ -18,9 +18,9 @@ Signal = Callable[[Floats], Floats]
 BaseSignal = Callable[[float, float, Floats], Floats]
 WireKind = Literal["contact_wire", "messenger_wire", "stitch_wire"]
 COPPER = 8900.0  # [kg/m³]
-_OR_TABLE = ", or a list of [x, value] pairs"
+_OR_TABLE = ", or a list of [x, value] pairs, or in a file the name of a .csv table"
 ROPE_FILL = 0.76  # of a rope's circle: 19 and 37 wires
-A_FILE: dict[str, Any] = {"type": "string", "pattern": r"\.csv$"}  # in a file of conditions
+A_FILE: dict[str, Any] = {"type": "string", "pattern": r"\.[cC][sS][vV]$"}  # in a file of conditions
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def with_tables(record: Mapping[str, Any], folder: Path | None) -> Record:
     for key, form in _FORMS.items():
         *outer, name = key.split(".")
         holder = found.get(outer[0]) if outer else found
-        if not isinstance(holder, dict) or not isinstance(holder.get(name), str):
+        if not isinstance(holder, dict) or not _is_file(holder.get(name)):
             continue
         try:
             rows = _rows(folder / holder[name], form) if folder else []
@@ -66,6 +66,10 @@ def with_tables(record: Mapping[str, Any], folder: Path | None) -> Record:
     if faults:
         raise InputError(*faults)
     return found
+
+
+def _is_file(value: Any) -> bool:
+    return isinstance(value, str) and value.lower().endswith(".csv")
 
 
 def _rows(path: Path, form: _Form) -> list[list[float]]:
