@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
+from catenary_fe.layout.conditions import conditions_text
 from catenary_fe.layout.receptance import receptance_table_of
 from catenary_fe.layout.toml import read_toml
 from catenary_fe.results.export import write_csv
@@ -229,7 +230,7 @@ class InputFiles:
             Path(layout).read_bytes(),
             tuple(file for file, _ in found),
             tuple(table for _, table in found),
-            Path(conditions).read_bytes() if conditions else None,
+            conditions_text(conditions) if conditions else None,
         )
 
     def keep(self, folder: Folder, run: Run, options: Sequence[str]) -> None:

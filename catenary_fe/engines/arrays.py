@@ -37,11 +37,11 @@ class PackedRows(NamedTuple):
 
 
 class Surfaces(NamedTuple):
-    """Irregularities of the contact wires' running surfaces, see ``Irregularity`` in ``fe.contact``.
+    """Curves, see ``EvenCurve`` in ``fe.contact``: running surfaces of contact wires, or bases over time.
 
-    first, step : [m], shape (contact wires,)
-    last : shape (contact wires,), number of each one's last place; -1: even
-    values : shape (contact wires, places, 2)
+    first, step : [m] or [s], shape (curves,)
+    last : shape (curves,), number of each one's last place; -1: it is 0 everywhere
+    values : shape (curves, places, 2)
     """
 
     first: Floats
@@ -65,6 +65,7 @@ class Laws(NamedTuple):
 
     kind, owner : shape (slots, laws), -1: none; and the pantograph
     row : shape (slots, laws, coordinates)
+    to_base : shape (slots, laws)
     values : shape (slots, laws, 2)
     frame : shape (slots, laws, points, 4)
     """
@@ -72,6 +73,7 @@ class Laws(NamedTuple):
     kind: Integers
     owner: Integers
     row: Floats
+    to_base: Floats
     values: Floats
     frame: Floats
 
@@ -95,6 +97,9 @@ class PantographParameters(NamedTuple):
     last : shape (slots,), number of the run's last step
     nominal : [m], height that coordinates count from
     base_x, base_z : [m], shape (points,), the line that bases follow
+    base_stiffness, base_damping : [N/m], [N s/m], shape (slots, pantographs, coordinates), of the springs and
+        dampers to the base
+    base : by how much each base moves up beside that, slot by slot, over the time
     laws : what is not linear in them
     """
 
@@ -121,6 +126,9 @@ class PantographParameters(NamedTuple):
     nominal: float
     base_x: Floats
     base_z: Floats
+    base_stiffness: Floats
+    base_damping: Floats
+    base: Surfaces
     laws: Laws
 
 

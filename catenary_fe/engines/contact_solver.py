@@ -113,16 +113,21 @@ def weigh_contact(
 
 @compiled
 def surface_at(surfaces: Surfaces, wire: int, position: float) -> tuple[float, float]:
-    """Height [m] and slope of a contact wire's running surface above its line."""
+    """Height [m] and slope of a contact wire's running surface; or height and rate of a base at a time."""
     last, h = surfaces.last[wire], surfaces.step[wire]
     share = min(max((position - surfaces.first[wire]) / h, 0.0), float(last))
     e = min(int(share), last - 1)
     xi = share - e
-    a, da = surfaces.values[wire, e, 0], surfaces.values[wire, e, 1]
-    b, db = surfaces.values[wire, e + 1, 0], surfaces.values[wire, e + 1, 1]
-    height = a + xi * (h * da + xi * (3 * (b - a) - h * (2 * da + db) + xi * (2 * (a - b) + h * (da + db))))
+    a, b = surfaces.values[wire, e], surfaces.values[wire, e + 1]
+    return cubic(a[0], a[1], b[0], b[1], h, xi)
+
+
+@compiled
+def cubic(a: float, da: float, b: float, db: float, h: float, xi: float) -> tuple[float, float]:
+    """A cubic through two values with their slopes, and its own slope, at a share of the way between."""
+    value = a + xi * (h * da + xi * (3 * (b - a) - h * (2 * da + db) + xi * (2 * (a - b) + h * (da + db))))
     slope = da + xi * (2 * (3 * (b - a) / h - 2 * da - db) + 3 * xi * (2 * (a - b) / h + da + db))
-    return height, slope
+    return value, slope
 
 
 @compiled
@@ -158,7 +163,11 @@ def place_base(heads: PantographParameters, work: Work, c: int, j: int, time: fl
     carried = False
     for s in range(heads.heave.shape[2]):
         carried = carried or heads.heave[c, j, s] != 0.0
-    work.base[c, j] = 0.0 if carried else base_height(heads, c, heads.owner[c, j], time)
+    p = heads.owner[c, j]
+    work.base[c, j] = 0.0 if carried else base_height(heads, c, p, time)
+    row = c * heads.follows.shape[1] + p
+    if not carried and heads.base.last[row] >= 0:
+        work.base[c, j] += surface_at(heads.base, row, time)[0]
 
 
 @compiled
@@ -214,7 +223,7 @@ def update_contact(
 
 @compiled
 def base_height(heads: PantographParameters, c: int, p: int, time: float) -> float:
-    """[m] that a pantograph's base has risen at a time [s]."""
+    """[m] that what a pantograph's base follows has risen at a time [s]."""
     x, z = heads.base_x, heads.base_z
     if heads.follows[c, p] == 0.0 or x.size < 2:
         return 0.0
@@ -241,6 +250,13 @@ def free_heads(heads: PantographParameters, pantographs: PantographState, c: int
                 )
             for r in range(size):
                 pantographs.x[c, p, r] += heads.inverse[c, p, r, s] * load
+        row = c * count + p
+        if heads.base.last[row] >= 0:
+            height, rate = surface_at(heads.base, row, time)
+            for s in range(size):
+                load = height * heads.base_stiffness[c, p, s] + rate * heads.base_damping[c, p, s]
+                for r in range(size):
+                    pantographs.x[c, p, r] += heads.inverse[c, p, r, s] * load
 
 
 @compiled

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Work
 from catenary_fe.engines.compiled import compiled
+from catenary_fe.engines.contact_solver import base_height, cubic, surface_at
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.layout.substructure import DAMPER, FRAME, FRICTION, STOP
 
@@ -41,9 +42,9 @@ def law_compliance(heads: PantographParameters, c: int, n: int, s: int) -> float
 
 @compiled
 def update_laws(
-    scheme: Scheme, heads: PantographParameters, pantographs: PantographState, work: Work, c: int
+    scheme: Scheme, heads: PantographParameters, pantographs: PantographState, work: Work, c: int, time: float
 ) -> float:
-    """Bring each law's force to what it should be; returns the largest change [N]."""
+    """Bring each law's force to what it should be at a time [s]; returns the largest change [N]."""
     largest = 0.0
     for n in range(heads.laws.kind.shape[1]):
         if heads.laws.kind[c, n] < 0:
@@ -56,6 +57,14 @@ def update_laws(
                 w += row * (pantographs.v[c, p, s] + scheme.g * pantographs.x[c, p, s])
                 a += row * pantographs.x[c, p, s]
                 give += row * law_compliance(heads, c, n, s)
+        grounded = heads.laws.to_base[c, n]
+        if grounded != 0.0:
+            u += grounded * base_height(heads, c, p, time)
+            base = c * pantographs.x.shape[1] + p
+            if heads.base.last[base] >= 0:
+                height, rate = surface_at(heads.base, base, time)
+                u += grounded * height
+                w += grounded * rate
         old = work.law_force[c, n]
         force = solve_law(scheme, heads, c, n, u, w, a, give, old)
         if force != old:
@@ -108,14 +117,6 @@ def frame_at(table: Floats, first: float, step: float, u: float) -> tuple[float,
     mass, mass_slope = cubic(table[e, 0], table[e, 1], table[e + 1, 0], table[e + 1, 1], step, xi)
     force, force_slope = cubic(table[e, 2], table[e, 3], table[e + 1, 2], table[e + 1, 3], step, xi)
     return mass, mass_slope, force, force_slope
-
-
-@compiled
-def cubic(a: float, da: float, b: float, db: float, h: float, xi: float) -> tuple[float, float]:
-    """A cubic through two values with their slopes, and its own slope, at a share of the way between."""
-    value = a + xi * (h * da + xi * (3 * (b - a) - h * (2 * da + db) + xi * (2 * (a - b) + h * (da + db))))
-    slope = da + xi * (2 * (3 * (b - a) / h - 2 * da - db) + 3 * xi * (2 * (a - b) / h + da + db))
-    return value, slope
 
 
 __all__ = ["FRAME", "begin_laws", "frame_at", "update_laws"]

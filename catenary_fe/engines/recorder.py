@@ -130,6 +130,14 @@ def make_pantographs(
         nominal=nominal,
         base_x=base.x,
         base_z=base.z,
+        base_stiffness=np.zeros(own),
+        base_damping=np.zeros(own),
+        base=Surfaces(
+            first=np.zeros(own[0] * own[1]),
+            step=np.ones(own[0] * own[1]),
+            last=np.full(own[0] * own[1], -1),
+            values=np.zeros((own[0] * own[1], sizes.steps + 1 if base.motions else 0, 2)),
+        ),
         laws=_no_laws(slots, sizes),
     )
     state = PantographState(
@@ -148,6 +156,7 @@ def _no_laws(slots: int, sizes: Sizes) -> Laws:
         kind=np.full(each, -1),
         owner=np.zeros(each, dtype=np.int64),
         row=np.zeros((*each, sizes.coordinates)),
+        to_base=np.zeros(each),
         values=np.zeros((*each, 2)),
         frame=np.zeros((*each, sizes.frames, 4)),
     )
@@ -159,6 +168,7 @@ def _load_laws(laws: Laws, slot: int, pantographs: Sequence[PlacedPantograph]) -
         for law in placed.body.laws:
             laws.kind[slot, n], laws.owner[slot, n] = law.kind, p
             laws.row[slot, n, : len(law.row)] = law.row
+            laws.to_base[slot, n] = law.to_base
             laws.values[slot, n, : len(law.values)] = law.values
             if law.table:
                 laws.frame[slot, n] = law.table[-1]  # what is beyond its own points is as at the last
@@ -211,12 +221,15 @@ def load_pantographs(
         heads.inverse,
         heads.load,
         heads.base_load,
+        heads.base_stiffness,
+        heads.base_damping,
         heads.heave,
         heads.roll,
     ):
         array[slot] = 0.0
     heads.owner[slot] = -1
     _load_laws(heads.laws, slot, start.pantographs)
+    heads.base.last.reshape(heads.follows.shape)[slot] = -1
     for p, placed in enumerate(start.pantographs):
         body, m = placed.body, placed.body.size
         state.q[slot, p, :m] = placed.heights
@@ -225,6 +238,12 @@ def load_pantographs(
         heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
         heads.load[slot, p, :m] = placed.uplift * body.load
         heads.base_load[slot, p, :m] = body.base_load
+        if placed.base:
+            heads.base_stiffness[slot, p, :m] = body.base_stiffness
+            heads.base_damping[slot, p, :m] = body.base_damping
+            n, row = len(placed.base.values), slot * heads.follows.shape[1] + p
+            heads.base.step[row], heads.base.last[row] = placed.base.step, n - 1
+            heads.base.values[row, :n] = placed.base.values
         heads.follows[slot, p] = body.follows and heads.base_z.any()
         heads.place[slot, p] = placed.position
         records.masses[slot, p, :m, 0] = placed.heights

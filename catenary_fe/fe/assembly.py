@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import Cables, mass_blocks, scattered
-from catenary_fe.fe.contact import BaseLine, Irregularity, surface_places
+from catenary_fe.fe.contact import BaseLine, EvenCurve, surface_places
 from catenary_fe.fe.installation import (
     Installation,
     WireLine,
@@ -119,10 +119,10 @@ def _wires(catenary: Catenary, mesh: Mesh) -> tuple[WireNodes, ...]:
     return tuple(found)
 
 
-def _worn(catenary: Catenary, number: int, wire: Wire, x: Floats) -> Irregularity | None:
+def _worn(catenary: Catenary, number: int, wire: Wire, x: Floats) -> EvenCurve | None:
     """The running surface that wear has left of a contact wire with nodes at x [m]."""
     places = surface_places(x)
-    return Irregularity.through(places, worn_surface(catenary, number, outer_diameter(wire), places))
+    return EvenCurve.through(places, worn_surface(catenary, number, outer_diameter(wire), places))
 
 
 def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import hermite
 from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout.conditions import BaseSignal
 from catenary_fe.layout.substructure import Strip, Substructure
 
 Floats = NDArray[np.float64]
@@ -29,11 +30,11 @@ def surface_places(x: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Irregularity:
-    """By how much the running surface of a contact wire lies above its axis line, over the place.
+class EvenCurve:
+    """Heights at even places [m] along the track or times [s], and cubic between them.
 
-    first, step : [m] along the track: the first place, and from one to the next
-    values : [m and 1], shape (places, 2), heights and their slopes; cubic between places
+    first, step : the first place or time, and from one to the next
+    values : shape (places, 2), heights [m], and their slopes [1] or rates [m/s]
     """
 
     first: float
@@ -41,7 +42,7 @@ class Irregularity:
     values: Floats
 
     @classmethod
-    def through(cls, x: Floats, heights: Floats) -> Irregularity | None:
+    def through(cls, x: Floats, heights: Floats) -> EvenCurve | None:
         """A smooth surface through heights [m] at even places [m]; None of an even surface."""
         from scipy.interpolate import CubicSpline
 
@@ -50,11 +51,11 @@ class Irregularity:
         values = np.column_stack([heights, CubicSpline(x, heights)(x, 1)])
         return cls(float(x[0]), float(x[1] - x[0]), values)
 
-    def over(self, other: Irregularity | None) -> Irregularity:
+    def over(self, other: EvenCurve | None) -> EvenCurve:
         """This one on top of another at the same places."""
         return replace(self, values=self.values + other.values) if other else self
 
-    def moved(self, along: float) -> Irregularity:
+    def moved(self, along: float) -> EvenCurve:
         """The same further along the track by so many metres."""
         return replace(self, first=self.first + along)
 
@@ -65,9 +66,9 @@ class Irregularity:
         x = self.first + self.step * np.arange(len(self.values))
         return CubicHermiteSpline(x, *self.values.T)
 
-    def at(self, position: float) -> tuple[float, float]:
-        """Height [m] and slope at a place [m]; that of the nearest end beyond them."""
-        x = np.clip(position, self._curve.x[0], self._curve.x[-1])
+    def at(self, place: float) -> tuple[float, float]:
+        """Height and slope at a place or time; those of the nearest end beyond them."""
+        x = np.clip(place, self._curve.x[0], self._curve.x[-1])
         return float(self._curve(x)), float(self._curve(x, 1))
 
 
@@ -84,7 +85,7 @@ class ContactPath:
     supports : numbers of the nodes at the supports
     section : number of its tension section, from 0
     across, across_dof : as ``index`` and ``dof``, of place and slope to the left; in the plane no rows
-    irregularity : of its running surface, or None where that is even
+    irregularity : by how much its running surface lies above its line, or None where that is even
     """
 
     x: Floats
@@ -97,7 +98,7 @@ class ContactPath:
     section: int = 0
     across: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     across_dof: Integers = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
-    irregularity: Irregularity | None = None
+    irregularity: EvenCurve | None = None
 
     def surface(self, position: float) -> tuple[float, float]:
         """[m] and slope of the running surface above the wire's line, at a place [m] along the track."""
@@ -132,6 +133,7 @@ class PlacedPantograph:
     heights : shape (coordinates,), its coordinates at the start of a run
     forces, wire_heights : [N], [m], shape (contacts,), contact forces there, and heights of the wires above
         the nominal contact wire height
+    base : by how much its base has moved up, over the time of a run; None where it does not
     """
 
     body: Substructure
@@ -140,6 +142,7 @@ class PlacedPantograph:
     heights: Floats = field(default_factory=lambda: np.zeros(0))
     forces: Floats = field(default_factory=lambda: np.zeros(0))
     wire_heights: Floats = field(default_factory=lambda: np.zeros(0))
+    base: EvenCurve | None = None
 
 
 @dataclass(frozen=True)
@@ -158,10 +161,12 @@ class BaseLine:
 
     x : [m], shape (points,), along the track
     z : [m], shape (points,), above the nominal contact wire height
+    motions : what moves all bases up and down beside that, in runs
     """
 
     x: Floats
     z: Floats
+    motions: tuple[BaseSignal, ...] = ()
 
     @property
     def varies(self) -> bool:
@@ -171,6 +176,40 @@ class BaseLine:
     def under(self, body: Substructure, position: float) -> float:
         """[m] that the base of a pantograph has risen at a place [m]; 0 where it follows the rail."""
         return float(np.interp(position, self.x, self.z)) if body.follows else 0.0
+
+    def moving(
+        self, pantographs: Sequence[PlacedPantograph], speed: float, step: float, steps: int
+    ) -> list[PlacedPantograph]:
+        """The same on bases that move in a run at a speed [m/s], in so many time steps [s]."""
+        courses = self.courses([p.position for p in pantographs], speed, step, steps)
+        return [replace(p, base=course) for p, course in zip(pantographs, courses, strict=True)]
+
+    def courses(
+        self, starts: Sequence[float] | Floats, speed: float, step: float, steps: int
+    ) -> list[EvenCurve | None]:
+        """How bases move up that start at places [m]; None where nothing moves them."""
+        from scipy.interpolate import CubicSpline
+
+        if not self.motions:
+            return [None] * len(starts)
+        times = step * np.arange(steps + 1.0)
+        found: list[EvenCurve | None] = []
+        for start in starts:
+            each = [np.asarray(motion(float(start), speed, times)) for motion in self.motions]
+            heights = np.sum(each, axis=0)
+            values = np.column_stack([heights, CubicSpline(times, heights)(times, 1)])
+            found.append(EvenCurve(0.0, step, values))
+        return found
+
+    def height_at_rest(self, placed: PlacedPantograph) -> float:
+        """[m] of a base where a run begins, above the height that it has at the nominal contact wire."""
+        return self.under(placed.body, placed.position) + (placed.base.values[0, 0] if placed.base else 0.0)
+
+    def load_at_rest(self, placed: PlacedPantograph) -> Floats:
+        """[N], shape (coordinates,), of uplift and base where a run begins."""
+        body = placed.body
+        load: Floats = placed.uplift * body.load + self.under(body, placed.position) * body.base_load
+        return load + placed.base.values[0, 0] * body.base_stiffness if placed.base else load
 
 
 def place(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import scattered
-from catenary_fe.fe.contact import Irregularity, surface_places
+from catenary_fe.fe.contact import EvenCurve, surface_places
 from catenary_fe.fe.spring import Springs
 from catenary_fe.fe.system import System, TimeLoad, WireNodes
 from catenary_fe.layout import GRAVITY, InputError
@@ -37,6 +37,7 @@ def _with(system: System, effect: Effect) -> System:
     damping = np.concatenate([effect.damping(part) for part in parts], axis=1)
     strain = np.concatenate([effect.strain(part) for part in parts])
     load[-1] -= GRAVITY * mass
+    base, motion = system.base_line, effect.base_motion()
     return replace(
         system,
         cables=replace(system.cables, rest_strain=system.cables.rest_strain + strain),
@@ -46,6 +47,7 @@ def _with(system: System, effect: Effect) -> System:
         droppers=_lengthened(system, effect),
         wires=tuple(_with_surface(wire, effect) for wire in system.wires),
         time_loads=(*system.time_loads, *_time_loads(system, effect, parts, counts)),
+        base_line=replace(base, motions=(*base.motions, motion)) if motion else base,
     )
 
 
@@ -91,7 +93,7 @@ def _with_surface(wire: WireNodes, effect: Effect) -> WireNodes:
         return wire
     assert wire.wire is not None
     x = surface_places(wire.x)
-    surface = Irregularity.through(x, effect.irregularity(WirePart(wire.kind, wire.wire, x)))
+    surface = EvenCurve.through(x, effect.irregularity(WirePart(wire.kind, wire.wire, x)))
     return replace(wire, irregularity=surface.over(wire.irregularity)) if surface else wire
 
 

@@ -26,7 +26,7 @@ from catenary_fe.fe.cable import (
     strain_energy,
     tangent_blocks,
 )
-from catenary_fe.fe.contact import BaseLine, ContactPath, Irregularity
+from catenary_fe.fe.contact import BaseLine, ContactPath, EvenCurve
 from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.layout import Wire
 from catenary_fe.layout.conditions.effect import WireKind
@@ -61,7 +61,7 @@ class WireNodes:
     section: int = 0
     kind: WireKind = "contact_wire"
     wire: Wire | None = None
-    irregularity: Irregularity | None = None
+    irregularity: EvenCurve | None = None
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,13 @@ from catenary_fe.layout.as_built import AsBuilt, Drawn
 from catenary_fe.layout.builders import build_line, dropper_positions
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
 from catenary_fe.layout.conditions import (
+    BaseMotion,
     Conditions,
     ContactWireIrregularity,
     Effect,
     Gusts,
     Ice,
+    VehicleSuspension,
     Wind,
     WirePart,
     conditions_schema,
@@ -56,6 +58,7 @@ __all__ = [
     "AnyPantograph",
     "AsBuilt",
     "AttachedPantograph",
+    "BaseMotion",
     "Catenary",
     "CatenaryError",
     "Conditions",
@@ -86,6 +89,7 @@ __all__ = [
     "StitchWire",
     "Support",
     "Termination",
+    "VehicleSuspension",
     "Wear",
     "Wind",
     "Wire",

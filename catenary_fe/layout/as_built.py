@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Field, PlainSerializer, PlainValidator, ValidationError, WithJsonSchema, model_validator
+from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
 
-from catenary_fe.layout.conditions.effect import NumberOrTable, check_over_x, over_x, schema_over_x
+from catenary_fe.layout.conditions.effect import AS_IT_IS, NumberOrTable, over_x, schema_over_x, table_over_x
 from catenary_fe.layout.conditions.irregularity import Wave, drawn_waves
 from catenary_fe.layout.parameters import Parameters, Positive, problem_lines
 
@@ -59,11 +59,10 @@ class Drawn(Parameters):
 
 def _check(most: float) -> Callable[[Any], NumberOrTable | Drawn]:
     """Takes a number, a table over x, or what is drawn, each at most so large; raises ValueError."""
-    table = check_over_x(-most, most)
 
     def check(value: Any) -> NumberOrTable | Drawn:
         if not isinstance(value, dict | Drawn):
-            return table(value)
+            return table_over_x(value, -most, most)
         try:
             drawn = Drawn.model_validate(value)
         except ValidationError as error:
@@ -79,12 +78,11 @@ def _schema(most: float) -> dict[str, Any]:
     """What an editor checks of it."""
     kinds = {name: {"type": "integer" if name == "seed" else "number"} for name in Drawn.model_fields}
     drawn = {"type": "object", "properties": kinds, "required": ["deviation"], "additionalProperties": False}
-    return {"anyOf": [*schema_over_x(-most, most)["anyOf"], drawn]}
+    return schema_over_x(-most, most, drawn)
 
 
-_AS_IT_IS = PlainSerializer(lambda value: value, return_type=Any)
 Deviation = Annotated[
-    NumberOrTable | Drawn, _AS_IT_IS, PlainValidator(_check(0.5)), WithJsonSchema(_schema(0.5))
+    NumberOrTable | Drawn, AS_IT_IS, PlainValidator(_check(0.5)), WithJsonSchema(_schema(0.5))
 ]
 
 

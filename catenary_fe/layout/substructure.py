@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 STOP, DAMPER, FRICTION, FRAME = range(4)  # kinds of laws
-BASE = -1  # number of the base, which moves along the track at constant height
+BASE = -1  # number of the base, which moves along the track
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,7 @@ class Law:
     kind : ``STOP``: values (limit [m], stiffness [N/m]), pushes back beyond the limit; ``DAMPER``: (damping
         [N s/m],), while the row grows; ``FRICTION``: (force [N],); ``FRAME``: (first, step [m]), and a table
     row : shape (coordinates,), whose sum of products with them is the law's elongation
+    to_base : by how much that grows with each metre that the base rises
     table : shape (points, 4), of a frame over its height: mass [kg] and force down [N] beyond the linear
         ones, each with its slope
     """
@@ -76,6 +77,7 @@ class Law:
     kind: int
     row: tuple[float, ...]
     values: tuple[float, ...]
+    to_base: float = 0.0
     table: tuple[tuple[float, float, float, float], ...] = ()
 
     def static(self, u: float) -> tuple[float, float, float]:
@@ -196,20 +198,25 @@ class Substructure:
         found: list[Law] = [self.frame] if self.frame else []
         for joint in self.joints:
             row = self._elongation(joint)
-            found += [Law(kind, tuple((sign * row).tolist()), values) for kind, sign, values in joint.laws]
+            grounded = float(joint.lower == BASE)
+            found += [
+                Law(kind, tuple((sign * row).tolist()), values, -sign * grounded)
+                for kind, sign, values in joint.laws
+            ]
         return tuple(found)
 
-    def static_laws(self, y: Floats) -> tuple[Floats, Floats, float]:
+    def static_laws(self, y: Floats, risen: float = 0.0) -> tuple[Floats, Floats, float]:
         """What laws add at rest: forces against the coordinates, their tangent, and stored energy [J].
 
         y : shape (size,), coordinates
+        risen : [m] of the base
 
         Returns arrays of shape (size,) and (size, size).
         """
         force, tangent, energy = np.zeros(self.size), np.zeros((self.size, self.size)), 0.0
         for law in self.laws:
             row = np.array(law.row)
-            pull, slope, stored = law.static(float(row @ y))
+            pull, slope, stored = law.static(float(row @ y) + law.to_base * risen)
             force += pull * row
             tangent += slope * np.outer(row, row)
             energy += stored
@@ -254,15 +261,28 @@ class Substructure:
 
     @cached_property
     def base_load(self) -> Floats:
-        """[N/m], shape (size,): force on each coordinate for each metre that the base has risen.
+        """[N/m], shape (size,): force on each coordinate for each metre that the followed height has risen.
 
         Of the springs alone: a frame keeps its force over its working range, but its dampers feel it move.
         """
-        load = np.zeros(self.size)
-        for joint in self.joints:
-            if self.follows and joint.lower == BASE:
-                load[joint.upper] += joint.stiffness
-        return load
+        return self.base_stiffness * self.follows
+
+    @cached_property
+    def base_stiffness(self) -> Floats:
+        """[N/m], shape (size,): of the springs to the base, on each coordinate."""
+        return self._to_base([joint.stiffness for joint in self.joints])
+
+    @cached_property
+    def base_damping(self) -> Floats:
+        """[N s/m], shape (size,): of the dampers to the base, on each coordinate."""
+        return self._to_base([joint.damping for joint in self.joints])
+
+    def _to_base(self, values: list[float]) -> Floats:
+        found = np.zeros(self.size)
+        for joint, value in zip(self.joints, values, strict=True):
+            if joint.lower == BASE:
+                found[joint.upper] += value
+        return found
 
     def row(self, strip: Strip, lateral: float = 0.0) -> Floats:
         """Shape (size,): the strip's height over a place [m] to the left, as made of the coordinates."""

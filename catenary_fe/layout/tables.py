@@ -26,6 +26,8 @@ FACTORS: dict[str, dict[str, float]] = {
     "frequency": {"Hz": 1.0},
     "receptance": {"m/N": 1.0, "mm/N": 1e-3, "um/N": 1e-6},
     "angle": {"deg": 1.0, "rad": 180 / pi},
+    "temperature": {"°C": 1.0, "C": 1.0},
+    "load": {"N/m": 1.0, "kN/m": 1e3},
 }
 """From units to SI, by kind of quantity; angles to degrees."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
@@ -39,8 +41,8 @@ ROUNDED = 2.5e-3  # [m] by which columns may differ that say the same, both roun
 class Column:
     """What a column holds.
 
-    kind : of :data:`FACTORS`: a number with a unit; "whole", "text", "yes": without one;
-        "result": what follows from a layout, which is not read
+    kind : "length", "force", "load" and others of ``FACTORS``: a number with a unit; "whole", "text", "yes":
+        without one; "result": what follows from a layout, which is not read
     least : smallest number that is allowed
     words : texts that are allowed; empty: any
     """
@@ -300,8 +302,8 @@ def _heading_fault(name: str, unit: str, columns: Mapping[str, Column]) -> str |
 
 
 def _example(name: str, column: Column) -> str:
-    units = FACTORS.get(column.kind)
-    return f"{name}_{next(iter(units)).replace('/', '_per_')}" if units else name
+    units = [unit.replace("/", "_per_") for unit in FACTORS.get(column.kind, ())]
+    return f"{name}_{units[0]}" if units else name
 
 
 def _value(cell: str, column: Column, unit: str) -> Any:

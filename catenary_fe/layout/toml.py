@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -105,3 +106,18 @@ def read_bytes(path: Path, kind: str, most: int = LARGEST_FILE) -> bytes:
     if len(content) > most:
         raise InputError(f"{path}: larger than {most:,} bytes: that is not a {kind} file")
     return content
+
+
+def toml_value(value: Any) -> str:
+    """A value as TOML writes it, tables and lists in one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml_value, value)) + "]"
+    if isinstance(value, bool | int):
+        return str(value).lower()
+    return (
+        json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        if isinstance(value, str)
+        else (repr(float(value)))
+    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections import Counter
 from collections.abc import Sequence
@@ -22,6 +21,7 @@ from catenary_fe.layout.line import Line
 from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.parameters import Parameters
 from catenary_fe.layout.parts import Dropper, Span, SteadyArm, Support, Wire
+from catenary_fe.layout.toml import toml_value
 from catenary_fe.layout.variation import unit_of
 
 _WIDTH = 110  # of a line, where a list can be broken
@@ -251,21 +251,7 @@ def _line(name: str, value: Any, path: str) -> str:
     several = isinstance(value, list) and any(isinstance(v, dict) for v in value)
     unit = unit_of(path) or (unit_of(f"{path}.position") if isinstance(value, list) else "")
     said = f" # {unit}" if unit else ""
-    line = f"{name} = {_value(value)}{said}\n"
+    line = f"{name} = {toml_value(value)}{said}\n"
     if isinstance(value, list) and (several or len(line) > _WIDTH):
-        return f"{name} = [{said}\n" + "".join(f"    {_value(v)},\n" for v in value) + "]\n"
+        return f"{name} = [{said}\n" + "".join(f"    {toml_value(v)},\n" for v in value) + "]\n"
     return line
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
-    if isinstance(value, bool | int):
-        return str(value).lower()
-    return (
-        json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-        if isinstance(value, str)
-        else (repr(float(value)))
-    )

@@ -7,7 +7,7 @@ that cannot be judged on a run is left out.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING
@@ -16,8 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph, Catenary, Line
-from catenary_fe.layout.substructure import DAMPER, STOP, Substructure
 from catenary_fe.layout.terminations import WireField
+from catenary_fe.results.balances import (
+    energy_balance,
+    force_balance,
+    lumped,
+    name_of,
+    pantograph_energy,
+    worst,
+)
 from catenary_fe.results.check import Check
 from catenary_fe.results.signal import CUT_OFF, spectrum
 
@@ -29,9 +36,6 @@ Floats = NDArray[np.float64]
 DEEPEST = 0.010  # [m] of the head in the wire
 STEPS_A_PERIOD = 20  # the trapezoidal rule then lengthens a period by (2π/20)²/12, 0.8 %
 STEPS_AN_ELEMENT = 2  # below it, whole elements are jumped over
-IMBALANCE = 0.005  # of the uplift
-UNBALANCED = 0.02  # of the work done; of sound runs 0.5 % at most is missing, the integrator's own damping
-STAGES_UNBALANCED = 0.003  # of the contact force's work; 0.01 % in sound runs
 DRIFT = 0.03  # of the tension, which moves the wave speed by 1.5 %; pantographs alone change it by 1 %
 TONE = 0.03  # of the mean force
 TONE_BAND = 0.9, 1.15  # of the frequency: elements are of somewhat different lengths
@@ -46,9 +50,9 @@ def run_checks(run: Run) -> tuple[Check, ...]:
     """All quality checks that can be judged on a run."""
     checks: tuple[Callable[[Run], Iterator[Check]], ...] = (
         _penetration,
-        _force_balance,
-        _pantograph_energy,
-        _energy_balance,
+        force_balance,
+        pantograph_energy,
+        energy_balance,
         _tension_drift,
         _steps_per_element,
         _steps_per_period,
@@ -63,29 +67,8 @@ def run_checks(run: Run) -> tuple[Check, ...]:
     return tuple(check for each in checks for check in each(run))
 
 
-def _lumped(run: Run) -> list[tuple[int, AnyPantograph]]:
-    return [(i, p) for i, p in enumerate(run.pantographs) if p.masses]
-
-
 def _contact_stiffness(pantograph: AnyPantograph) -> float:
     return pantograph.assemble(spatial=False).contact.stiffness
-
-
-def _risen(run: Run, number: int, body: Substructure) -> Floats:
-    """[m], shape (times,): height above the nominal one at which a pantograph's base spring is force-free."""
-    if not body.follows:
-        return np.zeros(run.time.size)
-    risen = run.catenary.design_line(run.data["position"].values[number]) - run.catenary.contact_wire_height
-    return np.asarray(risen)
-
-
-def _name(run: Run, pantograph: int) -> str:
-    return str(run.data["pantograph"].values[pantograph])
-
-
-def _worst(found: Sequence[tuple[float, str]]) -> tuple[float, str]:
-    """The largest value and its text; not-a-number counts as the largest."""
-    return max(found, key=lambda item: np.inf if np.isnan(item[0]) else item[0])
 
 
 def _down(value: float) -> str:
@@ -100,127 +83,19 @@ def _penetration(run: Run) -> Iterator[Check]:
     What goes deeper is a spring so soft that it changes the result, or an impact that no head survives.
     """
     found = []
-    for i, pantograph in _lumped(run):
+    for i, pantograph in lumped(run):
         depth = run.data["mass_height"].values[i, 0] - run.data["wire_height"].values[i]
         x, force = (float(run.data[n].values[i, depth.argmax()]) for n in ("position", "contact_force"))
         span = int(np.searchsorted(run.data["support_position"].values, x))
         text = (
-            f"so deep the head of {_name(run, i)} goes into the wire at {x:.1f} m (span {span}), under"
+            f"so deep the head of {name_of(run, i)} goes into the wire at {x:.1f} m (span {span}), under"
             f" {force:.0f} N; raise contact_stiffness from {_contact_stiffness(pantograph):g} N/m, or find"
             " what the head hits there"
         )
         found.append((1e3 * float(depth.max()), text))
     if found:
-        value, text = _worst(found)
+        value, text = worst(found)
         yield Check("penetration", value, "mm", "at most", 1e3 * DEEPEST, text)
-
-
-def _force_balance(run: Run) -> Iterator[Check]:
-    """Newton's law over the whole run: uplift, springs and dampers of the base, less the contact force.
-
-    Together they are the momentum gained. The histories are those of the steps' ends; what is left of a sound
-    run is the rounding of the last velocity, far below half a per cent of the uplift (0.02 % at most in the
-    EN 50318:2002 runs).
-    """
-    if run.time.size < 3:
-        return
-    found = []
-    for i, pantograph in _lumped(run):
-        force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        body, heights, risen = _motion(run, i, pantograph)
-        if not _follows_from_motion(body):
-            continue
-        duration = float(run.time[-1])
-        pressed = body.stiffness.sum(axis=0) @ heights - body.base_load.sum() * risen
-        pressed = pressed + _law_forces(body, heights, run.step).sum(axis=0)
-        pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
-        pushed -= body.damping.sum(axis=0) @ (heights[:, -1] - heights[:, 0])
-        velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
-        gained = body.mass.sum(axis=0) @ velocity
-        found.append((100 * abs(float(pushed - gained)) / duration / uplift, _name(run, i)))
-    if found:
-        value, name = _worst(found)
-        text = (
-            f"share of the uplift force of {name} by which the forces on it and its momentum do not agree;"
-            " take a smaller time step or tolerance"
-        )
-        yield Check("force balance", value, "%", "at most", 100 * IMBALANCE, text)
-
-
-def _motion(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Substructure, Floats, Floats]:
-    """A pantograph's matrices in the plane, and its masses' heights, shape (masses, times), and its base's.
-
-    Both [m] above the nominal contact wire height.
-    """
-    body = pantograph.assemble(spatial=False)
-    heights = run.data["mass_height"].values[number, : body.size] - run.catenary.contact_wire_height
-    return body, heights, _risen(run, number, body)
-
-
-def _follows_from_motion(body: Substructure) -> bool:
-    """Whether all forces in a pantograph follow from places and rates: dry friction's at rest does not."""
-    return all(law.kind in (STOP, DAMPER) for law in body.laws)
-
-
-def _law_forces(body: Substructure, heights: Floats, step: float) -> Floats:
-    """[N], shape of heights: forces against the coordinates that are not linear."""
-    forces, rates = np.zeros_like(heights), np.gradient(heights, step, axis=1) if body.laws else heights
-    for law in body.laws:
-        row = np.array(law.row)
-        forces += np.outer(row, law.push(row @ heights, row @ rates))
-    return forces
-
-
-def _pantograph_energy(run: Run) -> Iterator[Check]:
-    """Uplift, contact force and base work on the masses; springs store it, dampers take it, masses keep it.
-
-    From the histories alone, so that it is there whatever integrated the run. Work of a step is the mean of a
-    force at its ends along the displacement. Of heads with several strips, or that roll, the single forces
-    are not known.
-    """
-    found = []
-    for i, pantograph in _lumped(run):
-        rolls = run.catenary.is_spatial and pantograph.panhead.spring_distance
-        if run.time.size < 5 or rolls or pantograph.panhead.strips > 1:
-            continue
-        body, heights, risen = _motion(run, i, pantograph)
-        if not _follows_from_motion(body):
-            continue
-        force, uplift = run.data["contact_force"].values[i], float(run.data["uplift_force"].values[i])
-        moved, velocity = np.diff(heights), np.gradient(heights, run.step, axis=1)
-        pushed = -(force[1:] + force[:-1]) / 2 * moved[0]
-        lifted = (uplift * body.load) @ moved + body.base_load @ moved * (risen[1:] + risen[:-1]) / 2
-        lost = (moved * (body.damping @ moved)).sum(axis=0) / run.step
-        laws = _law_forces(body, heights, run.step)
-        lost = lost + (moved * (laws[:, 1:] + laws[:, :-1])).sum(axis=0) / 2
-        stored = (velocity * (body.mass @ velocity) + heights * (body.stiffness @ heights)).sum(axis=0) / 2
-        balance = np.cumsum(pushed + lifted - lost) - (stored[1:] - stored[0])
-        share = np.abs(balance[1:-1] - balance[0]).max() / max(np.abs(pushed).sum(), 1e-9)
-        found.append((100 * float(share), _name(run, i)))
-    if found:
-        value, name = _worst(found)
-        text = (
-            f"share of the contact force's work on {name} that its springs, dampers and masses do not account"
-            " for; take a smaller time step"
-        )
-        yield Check("pantograph energy", value, "%", "at most", 100 * STAGES_UNBALANCED, text)
-
-
-def _energy_balance(run: Run) -> Iterator[Check]:
-    """Work of uplift forces and moving bases, less what dampers take, is stored and kinetic energy.
-
-    Of the whole system, where the run recorded it: all nonlinear runs do. What is missing of a sound run went
-    into the integrator's own damping: up to 0.2 % at 1 ms, 0.5 % at 2 ms.
-    """
-    if not run.has_energy:
-        return
-    missing, work = np.abs(run.missing_energy).max(), np.abs(run.data["driven_work"].values).max()
-    for i, pantograph in _lumped(run):  # the energy's potential has the uplift's work in it
-        lowest = _motion(run, i, pantograph)[1][-1]
-        work += float(run.data["uplift_force"].values[i]) * np.abs(lowest - lowest[0]).max()
-    text = "share of the work on wires and pantographs that is missing; take a smaller time step or tolerance"
-    share = 100 * float(missing / max(work, 1e-9))
-    yield Check("energy balance", share, "%", "at most", 100 * UNBALANCED, text)
 
 
 def _tension_drift(run: Run) -> Iterator[Check]:
@@ -288,8 +163,8 @@ def _element_passing(run: Run) -> Iterator[Check]:
         of_line, amplitude = spectrum(inside, run.step)
         band = (of_line > TONE_BAND[0] * frequency) & (of_line < TONE_BAND[1] * frequency)
         rms = sqrt(float((amplitude[band] ** 2).sum()) / 2 / HANN_WIDTH)
-        found.append((100 * rms / max(abs(float(inside.mean())), 1e-9), _name(run, i)))
-    value, name = _worst(found)
+        found.append((100 * rms / max(abs(float(inside.mean())), 1e-9), name_of(run, i)))
+    value, name = worst(found)
     text = (
         f"share of the mean force of {name}, as elements of {longest:g} m are passed at {frequency:.1f} Hz;"
         " take shorter ones (--element-m)"
@@ -313,9 +188,9 @@ def _steps_per_element(run: Run) -> Iterator[Check]:
 def _steps_per_period(run: Run) -> Iterator[Check]:
     """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
     found = [(CUT_OFF, "the filter's cut-off")]
-    for i, p in _lumped(run):
+    for i, p in lumped(run):
         resonance = sqrt(_contact_stiffness(p) / p.masses[0]) / (2 * pi)
-        found.append((resonance, f"the resonance of the head of {_name(run, i)} on its contact spring"))
+        found.append((resonance, f"the resonance of the head of {name_of(run, i)} on its contact spring"))
     highest, what = max(found)
     text = (
         f"in a period of {highest:.1f} Hz, {what}; take a time step of at most"
@@ -378,7 +253,7 @@ def _start_transient(run: Run) -> Iterator[Check]:
                 " evaluate spans further from both"
             )
             found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
-    value, text = _worst(found)
+    value, text = worst(found)
     yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
 
 

@@ -45,8 +45,8 @@ class Run:
     """Histories of a run, as an xarray Dataset with units, and the inputs they were computed from.
 
     data : variables position, contact_force, wire_height, mass_height, uplift_force (by pantograph),
-        dropper_force, support_uplift, in space contact_lateral, of several sections section_force, and
-        contact_wire_height and messenger_wire_height where the whole wires were stored; of nonlinear runs
+        dropper_force, support_uplift, in space contact_lateral, of moving bases base_height, of several
+        sections section_force; contact_wire_height, messenger_wire_height where stored; of nonlinear runs
         tension_change, energy, driven_work and lost_work; elasticity_uplift where it was computed; each has
         ``units`` and ``long_name``. Attributes hold the inputs, their hash, versions and settings.
     wall_s : [s] that the run took; not stored, so that a repeated run saves the same bytes

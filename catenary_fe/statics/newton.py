@@ -129,11 +129,9 @@ class _StaticContact:
         bodies = [p.body for p in pantographs]
         self.first = system.size + np.cumsum([0, *(body.size for body in bodies)])
         self.K = csr_matrix(block_diag(np.zeros((0, 0)), *(body.stiffness for body in bodies)))
-        risen = [system.base_line.under(p.body, p.position) for p in pantographs]
-        loads = [
-            p.uplift * p.body.load + z * p.body.base_load for p, z in zip(pantographs, risen, strict=True)
-        ]
-        self.load = np.concatenate([np.zeros(0), *loads])
+        base = system.base_line
+        self.load = np.concatenate([np.zeros(0), *(base.load_at_rest(p) for p in pantographs)])
+        self.risen = [base.height_at_rest(p) for p in pantographs]
         rows = lil_matrix((len(self.contacts), int(self.first[-1])))
         self.rest, self.base = np.zeros((2, len(self.contacts)))
         self.on = np.array(
@@ -152,7 +150,7 @@ class _StaticContact:
             surface, _ = system.contact_paths[contact.wire].surface(contact.position)
             self.rest[j] = float(row @ system.reference) - system.contact_wire_height + surface
             if contact.strip.body is None:
-                self.base[j] = risen[contact.pantograph]
+                self.base[j] = self.risen[contact.pantograph]
         self.rows: Any = rows.tocsr()
 
     def guess(self) -> Floats:
@@ -184,8 +182,8 @@ class _StaticContact:
         from scipy.sparse import csr_matrix
 
         parts = [
-            p.body.static_laws(x[a:b])
-            for p, a, b in zip(self.pantographs, self.first, self.first[1:], strict=False)
+            p.body.static_laws(x[a:b], risen)
+            for p, a, b, risen in zip(self.pantographs, self.first, self.first[1:], self.risen, strict=False)
         ]
         forces = np.concatenate([np.zeros(0), *(force for force, _, _ in parts)])
         tangent = csr_matrix(block_diag(np.zeros((0, 0)), *(slopes for _, slopes, _ in parts)))

@@ -74,6 +74,9 @@ def make_run(
         variables["section_force"] = (("pantograph", "section", "time"), history.section_force, "N", words)
         coordinates["section"] = ("section", np.arange(history.section_force.shape[1]) + 1)
     _add_contact_places(variables, coordinates, shape, case, history)
+    courses = shape.system.base_line.courses(case.start, case.speed, time.step, history.time.size - 1)
+    if moved := [course.values[:, 0] for course in courses if course]:
+        variables["base_height"] = (by_time, np.array(moved), "m", "height of the moving bases")
     _add_wire_shapes(variables, coordinates, shape, history)
     _add_balances(variables, coordinates, shape, history)
     attributes = _provenance(shape, pantographs, case.speed, time, method)

@@ -247,6 +247,11 @@ def _check_model(
     if list(pantographs) != built:
         names = ", ".join(p.name for p in built) or "none"
         raise InputError(f"pantographs are not those of the model ({names}); give the same to both")
+    if shape.system.base_line.motions and len(built) < len(model.pantographs):
+        raise InputError(
+            "conditions: base moves, and attached pantographs stand on bases of the script's own; leave base"
+            " out, and move them there"
+        )
     if energy:
         raise InputError(
             "energy: not of a model that a script may have changed, whose springs and masses are not those of"

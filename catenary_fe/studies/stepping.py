@@ -1,4 +1,4 @@
-"""Runs step by step: a script sets forces and speed as it goes, as active pantographs and co-simulation do."""
+"""Runs that a script steers step by step, for active pantographs and co-simulation."""
 
 from __future__ import annotations
 
@@ -14,14 +14,12 @@ from catenary_fe.engines.history import FEWEST, History
 from catenary_fe.engines.nonlinear.run import NonlinearEngine, NonlinearRun
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL
-from catenary_fe.fe.contact import place
 from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
-from catenary_fe.statics.newton import static_contact
 from catenary_fe.studies.checks import check_speed, plan_run
 from catenary_fe.studies.linearised import MeanForce, aimed
 from catenary_fe.studies.record import make_run
@@ -32,6 +30,7 @@ STEERED = (
     "computed step by step, with forces or speeds that a script set: they are not in this record; to repeat"
     " the run, repeat the script"
 )
+HIGHEST = 3.0  # [m] by which a base may move: the way of a frame
 STRONGEST = 5000.0  # [N] of an uplift: beyond it the number is in another unit
 
 
@@ -70,9 +69,7 @@ def stepping(
     force = MeanForce(pantographs, speed)
     if force.sought:
         force = aimed(shape, case, time)
-    placed = place(case.pantographs, force.uplifts, case.start, spatial=shape.system.spatial)
-    moved, placed = static_contact(shape.system, placed)
-    run = NonlinearRun(NonlinearEngine(shape.system, time), moved, placed, case.speed, steps)
+    run = NonlinearEngine(shape.system, time).begin(case, force.uplifts, steps)
 
     def label(history: History, *, steered: bool) -> Run:
         warnings = [*case.warnings, *([STEERED] if steered else [])]
@@ -155,12 +152,20 @@ class Session:
 
     @checked
     def step(
-        self, steps: int = 1, *, uplift_force: ArrayLike | None = None, speed: float | None = None
+        self,
+        steps: int = 1,
+        *,
+        uplift_force: ArrayLike | None = None,
+        base_height: ArrayLike | None = None,
+        speed: float | None = None,
     ) -> Floats:
         """Take steps, and return the contact forces [N] at their end, shape (pantographs,).
 
         uplift_force : [N] on the lowest masses from now on, one for all pantographs or one each; below 0 it
             pulls the head down; unset: as before
+        base_height : [m] by which the bases are lifted, at the end of the first of these steps and from then
+            on, one for all pantographs or one each; their rate in that step is the difference over the step,
+            and acts through the damper of the lowest stage. Unset: as before
         speed : [m/s] from now on, 0 to stand still; unset: as before
 
         Raises InputError for values in another unit and behind the session's end, SolverError where a step
@@ -174,6 +179,8 @@ class Session:
             )
         if uplift_force is not None:
             self._push(uplift_force)
+        if base_height is not None:
+            self._lift(base_height)
         if speed is not None and speed != self.speed:
             self._drive(speed)
         for _ in range(steps):
@@ -211,12 +218,30 @@ class Session:
             self._steered, self.uplift_force = True, given
             self._run.push(given)
 
+    def _lift(self, base_height: ArrayLike) -> None:
+        given = numbers("base_height", np.broadcast_to(base_height, self.uplift_force.shape).copy())
+        if np.abs(given).max() > HIGHEST:
+            raise InputError(
+                f"base_height = {given.tolist()} m: must be within ±{HIGHEST:g} m; look at the unit"
+            )
+        self._refuse_moving_bases("base_height")
+        self._steered = True
+        self._run.move_base(given)
+
     def _drive(self, speed: float) -> None:
         speed = number("speed", speed, "m/s", least=0.0)
         if speed:
             check_speed(speed)
+        self._refuse_moving_bases("speed")
         self._steered, self.speed = True, speed
         self._run.drive(speed)
+
+    def _refuse_moving_bases(self, what: str) -> None:
+        if self._shape.system.base_line.motions:
+            raise InputError(
+                f"{what}: the conditions move the bases already, by the speed at the start; leave their base"
+                f" motion out, or {what}"
+            )
 
     def _check_place(self, position: Floats) -> None:
         last = float(self._shape.catenary.length)

@@ -5,6 +5,7 @@ import json
 import pandas as pd
 import pytest
 
+import catenary_fe as cf
 from catenary_fe.cli.main import main
 from tests.conftest import LAYOUTS
 
@@ -107,3 +108,19 @@ def test_wind_on_a_line_in_the_plane(tmp_path, capsys):
     layout = str(LAYOUTS / "en50318_2002.toml")
     assert main(["cases", layout, "--conditions", storm(tmp_path)]) == 3
     assert "set spatial = true in the layout" in capsys.readouterr().err
+
+
+def test_a_run_keeps_conditions_that_need_no_other_file(line, tmp_path):
+    """The track comes from a table; the kept file, and the record, have its numbers."""
+    (tmp_path / "track.csv").write_text("x_m,height_mm\n0,0\n100,6\n200,-4\n", encoding="utf-8")
+    text = '[base]\nheight = "track.csv"\nsuspension = { frequency = 1.5 }\n'
+    run = ["run", str(line), "--pantograph", "DSA380", "--speed-kmh", "250", "--method", "linearised"]
+    out = tmp_path / "run"
+    assert main([*run, "--conditions", storm(tmp_path, text), "-o", str(out), "--quiet"]) in (0, 1)
+    (tmp_path / "track.csv").unlink()
+    kept = cf.load_conditions(out / "conditions.toml")
+    assert kept.base.height == ((0.0, 0.0), (100.0, 0.006), (200.0, -0.004))
+    read = cf.load_run(out / "run.nc")
+    assert read.conditions == kept
+    assert abs(read.data["base_height"].values).max() > 0.001
+    assert main(["rerun", str(out)]) == 0

@@ -70,8 +70,12 @@ def test_parts_go_by_station_and_name(shape, pushed):
         s.stiffness for s in pushed.stages
     ]
     model.lift([90.0])
-    (load, share, base), (contact,) = *parts.loads, parts.contacts
-    assert (mbs.GetLoadParameter(load, "load"), share, base) == (90.0, 1.0, pushed.stages[-1].stiffness)
+    (load, last), (contact,) = *parts.loads, parts.contacts
+    assert (mbs.GetLoadParameter(load, "load"), last) == (90.0, len(pushed.stages) - 1)
+    model.lift([90.0], bases=[(0.01, 0.2)])
+    below = pushed.stages[-1]
+    by_hand = 90.0 + 0.01 * below.stiffness + 0.2 * below.damping
+    assert mbs.GetLoadParameter(load, "load") == pytest.approx(by_hand)
     model.place([25.0])
     element = int(mbs.GetMarkerParameter(contact.wire_marker, "bodyNumber"))
     begin, end = (wire.x[wire.nodes.index(int(n))] for n in mbs.GetObjectParameter(element, "nodeNumbers"))

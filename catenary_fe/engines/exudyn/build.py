@@ -149,27 +149,36 @@ class ExudynModel:
         self.contacts.move_to(positions, speed)
 
     def lift(
-        self, uplifts: Sequence[float] | Floats, positions: Sequence[float] | Floats | None = None
+        self,
+        uplifts: Sequence[float] | Floats,
+        positions: Sequence[float] | Floats | None = None,
+        bases: Sequence[tuple[float, float]] | None = None,
     ) -> None:
         """Set uplift forces [N], one a pantograph, and heights of the bases.
 
         positions : [m] along the track, one a pantograph, where the bases follow the contact wire's design
             height; unset: they stand at the nominal one
+        bases : heights [m] and rates [m/s] of bases that move up beside that, one a pantograph; unset: 0
 
         Attached ones have loads of their own.
         """
         at = [None] * len(self.pantographs) if positions is None else positions
-        for parts, uplift, x in zip(self.pantographs, uplifts, at, strict=True):
-            if parts.substructure is None:
+        moved = bases or [(0.0, 0.0)] * len(self.pantographs)
+        for parts, uplift, x, (height, rate) in zip(self.pantographs, uplifts, at, moved, strict=True):
+            body = parts.substructure
+            if body is None:
                 continue
-            risen = 0.0 if x is None else self.system.base_line.under(parts.substructure, float(x))
-            for load, share, base in parts.loads:
-                self.mbs.SetLoadParameter(load, "load", share * float(uplift) + base * risen)
+            risen = 0.0 if x is None else self.system.base_line.under(body, float(x))
+            force = float(uplift) * body.load + risen * body.base_load
+            force += height * body.base_stiffness + rate * body.base_damping
+            for load, coordinate in parts.loads:
+                self.mbs.SetLoadParameter(load, "load", float(force[coordinate]))
             for contact in parts.contacts:
                 if contact.strip is not None and contact.strip.body is None:
-                    height = (self.system.contact_wire_height + risen) * np.eye(3)[self.system.axes - 1]
+                    above = self.system.contact_wire_height + risen + height
                     node = self.mbs.GetMarker(contact.strip_marker)["nodeNumber"]
-                    self.mbs.SetNodeParameter(node, "referenceCoordinates", list(height))
+                    place = list(above * np.eye(3)[self.system.axes - 1])
+                    self.mbs.SetNodeParameter(node, "referenceCoordinates", place)
 
     def load_at(self, time: float) -> None:
         """Give the loads of the line that vary in time their values at a time [s]."""

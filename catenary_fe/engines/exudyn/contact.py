@@ -66,7 +66,7 @@ class PantographParts:
     bodies : objects; those that carry strips first
     joints : objects, springs and dampers between bodies, or a body and the base
     coordinates : node, and which of its coordinates, of each of the substructure's coordinates
-    loads : with each one's share in the uplift force, and [N/m] for each metre that the base has risen
+    loads : and which of the substructure's coordinates each acts on: of the uplift, and of a base that rises
     strips : position markers on the middles of the collector strips
     contacts : each strip on each contact wire
     masses : position markers whose heights results record
@@ -77,7 +77,7 @@ class PantographParts:
     bodies: list[int]
     joints: list[int]
     coordinates: list[tuple[int, int]]
-    loads: list[tuple[int, float, float]]
+    loads: list[tuple[int, int]]
     strips: list[int]
     contacts: list[ContactParts]
     masses: list[int]
@@ -108,9 +108,8 @@ def add_pantograph(
     coordinates += roll_places
     on = [_coordinate_marker(mbs, place) for place in coordinates]
     loads = [
-        (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=0.0))), float(share), float(base))
-        for marker, share, base in zip(on, assembled.load, assembled.base_load, strict=True)
-        if share or base
+        (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=on[at], load=0.0))), int(at))
+        for at in np.flatnonzero(assembled.load + assembled.base_stiffness + assembled.base_damping)
     ]
     middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
     strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]

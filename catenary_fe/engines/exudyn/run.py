@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import replace
 
 import exudyn as exu
@@ -17,7 +18,7 @@ from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_st
 from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.contact import place
+from catenary_fe.fe.contact import EvenCurve, place
 from catenary_fe.layout import SolverError
 from catenary_fe.statics import Shape
 from catenary_fe.statics.newton import static_contact
@@ -29,6 +30,8 @@ _ALONG = exu.OutputVariableType.ForceLocal  # of a dropper
 _BOTH = exu.ConfigurationType.Initial, exu.ConfigurationType.Current
 
 _log = logging.getLogger(__name__)
+
+Bases = Sequence[EvenCurve | None]
 
 
 class ExudynEngine:
@@ -69,10 +72,13 @@ class ExudynEngine:
         assert checkpoint is None
         model = self._model or exudyn_model(self._shape, case.pantographs)
         try:
-            _start(model, case, uplifts, settle=self._model is not None)
-            recorder = _Recorder(model, case, uplifts, self._time, (self._every, self._energy_every))
+            step, line = self._time.step, model.system.base_line
+            bases = line.courses(case.start, case.speed, step, case.steps(step))
+            _start(model, case, uplifts, bases, settle=self._model is not None)
+            every = self._every, self._energy_every
+            recorder = _Recorder(model, case, uplifts, bases, self._time, every)
             try:
-                _integrate(model, case, uplifts, recorder, self._time, progress)
+                _integrate(model, case, uplifts, bases, recorder, self._time, progress)
             except (SolverError, KeyboardInterrupt) as error:
                 raise RunStopped(recorder.history().until(recorder.done), error) from None
             return recorder.history()
@@ -81,9 +87,10 @@ class ExudynEngine:
                 model.release()
 
 
-def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) -> None:
+def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, settle: bool) -> None:
     """Bring the model to rest in static contact.
 
+    bases : whose motion begins from rest
     settle : also by Exudyn's static solver, for what was changed or attached
     """
     mbs, system = model.mbs, model.system
@@ -93,20 +100,25 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, *, settle: bool) 
     q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if own:
         records = case.pantographs[:known]
-        moved, placed = static_contact(
-            system, place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
-        )
+        placed = place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
+        placed = [replace(p, base=base) for p, base in zip(placed, bases, strict=False)]
+        moved, placed = static_contact(system, placed)
         q[: system.dof.size] = moved
         for parts, where in zip(own, placed, strict=True):
             q[parts.index(mbs)] = where.heights
     else:
         q[: system.dof.size] = 0.0
     model.load_at(0.0)
-    model.lift(uplifts, case.start)
+    model.lift(uplifts, case.start, [(base.at(0.0)[0] if base else 0.0, 0.0) for base in bases])
     model.place(case.start)  # first: static contact has strips that roll where the wires were installed
     _set_state(model, q, np.zeros_like(q))
     if settle:
         solve_static(mbs, what="static contact at the start", name=model.name)
+
+
+def _now(bases: Bases, time: float) -> list[tuple[float, float]]:
+    """Heights [m] and rates [m/s] of bases that move."""
+    return [base.at(time) if base else (0.0, 0.0) for base in bases]
 
 
 def _set_state(model: ExudynModel, q: Floats, v: Floats) -> None:
@@ -121,6 +133,7 @@ def _integrate(
     model: ExudynModel,
     case: RunCase,
     uplifts: Floats,
+    bases: Bases,
     recorder: _Recorder,
     time: TimeSettings,
     progress: Progress | None,
@@ -140,8 +153,8 @@ def _integrate(
             if (count - 1) % parts == 0:
                 recorder.record((count - 1) // parts)
             model.load_at(end)
-            if model.system.base_line.varies:
-                model.lift(uplifts, case.start + case.speed * end)
+            if model.system.base_line.varies or model.system.base_line.motions:
+                model.lift(uplifts, case.start + case.speed * end, _now(bases, end))
             contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
@@ -171,6 +184,7 @@ class _Recorder:
         model: ExudynModel,
         case: RunCase,
         uplifts: Floats,
+        bases: Bases,
         time: TimeSettings,
         every: tuple[int, int],
     ) -> None:
@@ -188,7 +202,7 @@ class _Recorder:
         self._support_index = np.concatenate([path.index[path.supports, 0] for path in paths])
         self._support = np.zeros((self._support_index.size, n))
         self._wire: list[Floats] = []
-        self._balance = _EnergyBalance(model, uplifts, steps, every[1]) if every[1] else None
+        self._balance = _EnergyBalance(model, uplifts, bases, steps, every[1]) if every[1] else None
         self._tension = TensionRecord(TensionGauge(system))
         self._tension_every = max(1, round(INTERVAL / time.step))
         self._notes: dict[float, int] = {}
@@ -297,7 +311,8 @@ class _EnergyBalance:
     every : steps between readings of the energy
     """
 
-    def __init__(self, model: ExudynModel, uplifts: Floats, steps: int, every: int) -> None:
+    def __init__(self, model: ExudynModel, uplifts: Floats, bases: Bases, steps: int, every: int) -> None:
+        self._bases = bases
         self.every, self._model, self._contacts = every, model, model.contacts
         self._damping, self._droppers = model.system.damping(), model.system.droppers
         self._line = model.system.dof.size
@@ -349,9 +364,11 @@ class _EnergyBalance:
         """
         found, paths = np.zeros(size), self._model.system.contact_paths
         found[: self._line] = self._model.system.varying(time)
+        moved = _now(self._bases, time)
         for i, (parts, body, index, _) in enumerate(self._bodies):
             risen = self._model.system.base_line.under(body, float(positions[i]))
             found[index] += risen * body.base_load
+            found[index] += moved[i][0] * body.base_stiffness + moved[i][1] * body.base_damping
             for contact, force in zip(parts.contacts, forces[i], strict=True):
                 path = paths[contact.wire]
                 e, weights = path.at(float(positions[i]) + contact.ahead)

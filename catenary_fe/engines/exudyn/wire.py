@@ -47,8 +47,8 @@ class WireRun:
         sliding = [parts for parts in self._parts if parts]
         self._contacts = Contacts(mbs, system, contact, sliding)
         for parts, p in zip(self._parts, placed, strict=True):
-            for load, share, _ in parts.loads if parts else ():
-                mbs.SetLoadParameter(load, "load", share * p.uplift)
+            for load, at in parts.loads if parts else ():
+                mbs.SetLoadParameter(load, "load", float(p.body.load[at]) * p.uplift)
         sizes = Sizes.of([placed], 1, steps, 0)
         self.heads, _ = make_pantographs(1, sizes, 0.0, system.base_line)
         self.records = make_records(1, sizes, (system.droppers.length.size, 0, 0, 0), 0)

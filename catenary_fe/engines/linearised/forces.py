@@ -196,7 +196,7 @@ def solve_contacts(
             if links > 0:
                 change = max(change, update_arms(scheme, line, wires, work, c))
             if laws > 0:
-                change = max(change, update_laws(scheme, heads, pantographs, work, c))
+                change = max(change, update_laws(scheme, heads, pantographs, work, c, time))
             settled = change <= TOLERANCE or contacts + work.active_count[c] + links + laws == 1
             if settled:
                 break

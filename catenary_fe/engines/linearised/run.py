@@ -137,6 +137,7 @@ class LinearisedEngine:
         begin, case = clock.perf_counter(), job.task.case
         try:
             placed = place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
+            placed = self._system.base_line.moving(placed, case.speed, self._time.step, job.steps)
             job.start = static_contact(self.setup, placed, case.speed, batch.signals[:, 0])
         except CatenaryError as error:
             job.task.failed(error)

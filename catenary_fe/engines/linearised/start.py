@@ -85,9 +85,7 @@ class _Contact:
             rows.append(row)
             rest.append(height)
             placed = pantographs[contact.pantograph]
-            base.append(
-                setup.base_line.under(placed.body, placed.position) if contact.strip.body is None else 0.0
-            )
+            base.append(setup.base_line.height_at_rest(placed) if contact.strip.body is None else 0.0)
             heads.append(pantographs[contact.pantograph].body.row(contact.strip, lateral))
         self._rows: Floats = np.array(rows)
         self._rest, self._heads, self._base = np.array(rest), heads, np.array(base)
@@ -98,8 +96,9 @@ class _Contact:
         self._laws = laws
         self._tangents = [(law.preload, law.stiffness) for law in laws]  # force at the strip's height, slope
         self.take_tangents(np.zeros(len(rows)), np.zeros(setup.model.size))
-        self._own = [placed.body.static_laws(np.zeros(placed.body.size)) for placed in pantographs]
-        self._at: Floats = np.zeros(int(self._first[-1]))
+        self._own: list[Any] = []
+        self._at: Floats = np.full(int(self._first[-1]), np.inf)
+        self.take_laws(np.zeros(self._at.size))
 
     def take_tangents(self, forces: Floats, q: Floats) -> bool:
         """Take the straight piece of each law of points where its contact is; true if one changed."""
@@ -122,12 +121,12 @@ class _Contact:
 
         heads : shape (coordinates of all,)
         """
-        if not any(placed.body.laws for placed in self._pantographs):
-            return False
         parts = zip(self._pantographs, self._first, self._first[1:], strict=False)
-        self._own = [placed.body.static_laws(heads[a:b]) for placed, a, b in parts]
+        base = self._setup.base_line
+        self._own = [p.body.static_laws(heads[a:b], base.height_at_rest(p)) for p, a, b in parts]
         before, self._at = self._at, heads
-        return float(np.abs(heads - before).max()) > _SETTLED
+        nonlinear = any(placed.body.laws for placed in self._pantographs)
+        return nonlinear and float(np.abs(heads - before).max()) > _SETTLED
 
     def solve(
         self, slack: list[int], off: list[int], shifted: Floats
@@ -149,9 +148,7 @@ class _Contact:
             part = slice(self._first[p], self._first[p + 1])
             force, tangent, _ = self._own[p]
             A[part, part] = placed.body.stiffness + tangent
-            risen = self._setup.base_line.under(placed.body, placed.position)
-            right[part] = placed.uplift * placed.body.load + risen * placed.body.base_load
-            right[part] += tangent @ self._at[part] - force
+            right[part] = self._setup.base_line.load_at_rest(placed) + tangent @ self._at[part] - force
         for j in range(count):
             self._add_law(A, right, j, total + j, j in off, float(self._rows[j] @ shifted))
         for i, dropper in enumerate(slack):

@@ -92,6 +92,12 @@ def _check_fit(shape: Shape, modes: Modes, step: float) -> None:
         raise InputError("modal run: the modes are of another line or mesh; give solve_modes(shape)")
     if shape.catenary.changes_height:
         raise InputError("modal run: the contact wire changes its height along the line; use simulate")
+    line = shape.system
+    if line.base_line.motions or line.time_loads or any(path.irregularity for path in line.contact_paths):
+        raise InputError(
+            "modal run: gusts, a base that moves and an uneven contact wire are not in it; leave them out of"
+            " the conditions, or use simulate"
+        )
     if len(shape.contact_wires) > 1:
         raise InputError("modal run: the line has two contact wires, the modal run knows one; use simulate")
 

@@ -57,6 +57,13 @@ class NonlinearEngine:
         self.iterations = 0
         self._notes: list[str] = []
 
+    def begin(self, case: RunCase, uplifts: Floats, steps: int) -> NonlinearRun:
+        """A run of so many steps, in static contact at its start. Raises SolverError where there is none."""
+        placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
+        placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
+        moved, placed = static_contact(self._system, placed)
+        return NonlinearRun(self, moved, placed, case.speed, steps)
+
     def run(
         self,
         case: RunCase,
@@ -71,10 +78,8 @@ class NonlinearEngine:
         Raises SolverError without static contact, RunStopped with the history until then where steps do not
         converge, not even much shorter ones, or the user interrupts.
         """
-        placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
-        moved, placed = static_contact(self._system, placed)
         steps, interval = case.steps(self._time.step), max(1, round(INTERVAL / self._time.step))
-        run = NonlinearRun(self, moved, placed, case.speed, steps)
+        run = self.begin(case, uplifts, steps)
         run.take_up(checkpoint)
         try:
             while run.done < steps:
@@ -170,6 +175,20 @@ class NonlinearRun:
         """Lift the pantographs with other forces [N] from here on, shape (pantographs,)."""
         for p, (placed, uplift) in enumerate(zip(self.placed, uplifts, strict=True)):
             self.state.heads.load[0, p, : placed.body.size] = uplift * placed.body.load
+
+    def move_base(self, heights: Floats) -> None:
+        """Move the bases in the next step to heights [m], shape (pantographs,), above those at rest."""
+        heads = self.state.heads
+        if not heads.base.values.shape[1]:
+            values = np.zeros((len(self.placed), self._steps + 1, 2))
+            base = heads.base._replace(
+                step=np.full(len(values), self._step), last=np.full(len(values), self._steps), values=values
+            )
+            self.state.heads = heads = heads._replace(base=base)
+        for curve, height in zip(heads.base.values, heights, strict=True):
+            rate = (height - curve[self.done, 0]) / self._step
+            curve[self.done + 1 :] = height, 0.0
+            curve[self.done + 1, 1] = rate
 
     def drive(self, speed: float) -> None:
         """Run on at another speed [m/s] from where the pantographs are; all sections are computed then."""

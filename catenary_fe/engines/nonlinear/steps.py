@@ -21,6 +21,7 @@ from catenary_fe.engines.contact_solver import (
     lateral_place,
     place_base,
     place_head,
+    surface_at,
     update_contact,
     weigh_contact,
 )
@@ -125,14 +126,19 @@ def _contacts(heads: PantographParameters, work: Work, residual: Floats) -> None
 
 @compiled
 def _relax(
-    scheme: Scheme, wires: Wires, heads: PantographParameters, pantographs: PantographState, work: Work
+    scheme: Scheme,
+    wires: Wires,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    work: Work,
+    time: float,
 ) -> None:
     """Bring the contact forces to their laws, and the accelerations with them."""
     contacts, laws = heads.owner.shape[1], heads.laws.kind.shape[1]
     for _ in range(SWEEPS):
         change = 0.0
         if laws > 0:
-            change = update_laws(scheme, heads, pantographs, work, 0)
+            change = update_laws(scheme, heads, pantographs, work, 0, time)
         for j in range(contacts):
             if heads.owner[0, j] >= 0:
                 change = max(change, update_contact(scheme, wires, heads, pantographs, work, 0, j))
@@ -262,7 +268,7 @@ def _base_work(
     energy: EnergyBalance,
     time: float,
 ) -> float:
-    """Work of the rising bases on the masses in the step that ends at a time [J]."""
+    """Work of the bases on the masses in the step that ends at a time, as forces on fixed springs [J]."""
     driven = 0.0
     for p in range(pantographs.x.shape[1]):
         risen = (base_height(heads, 0, p, time - scheme.h) + base_height(heads, 0, p, time)) / 2
@@ -270,6 +276,14 @@ def _base_work(
             for s in range(pantographs.x.shape[2]):
                 place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
                 driven += risen * heads.base_load[0, p, s] * (place - energy.heads[p, s])
+        if heads.base.last[p] >= 0:
+            before, early = surface_at(heads.base, p, time - scheme.h)
+            now, late = surface_at(heads.base, p, time)
+            for s in range(pantographs.x.shape[2]):
+                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
+                force = heads.base_stiffness[0, p, s] * (before + now) / 2
+                force += heads.base_damping[0, p, s] * (early + late) / 2
+                driven += force * (place - energy.heads[p, s])
     return driven
 
 
@@ -359,7 +373,7 @@ def _loop(sources: str) -> Any:
                 for i in range(residual.size):
                     motion.before[i] = flat.x[i]
                     flat.x[i] += residual[i]
-                _relax(scheme, wires, heads, pantographs, work)
+                _relax(scheme, wires, heads, pantographs, work, scheme.h * (n + 1))
                 earlier = change
                 change, moved = _correct(scheme, wires, motion)
                 if not change < FAR:

@@ -8,15 +8,18 @@ from typing import Any, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from catenary_fe.layout.arguments import checked
-from catenary_fe.layout.conditions.effect import Effect, TemperatureOverX, WirePart, over_x
+from catenary_fe.layout.conditions.base import BaseMotion, MovingBase, VehicleSuspension
+from catenary_fe.layout.conditions.effect import BaseSignal, Effect, TemperatureOverX, WirePart, over_x
+from catenary_fe.layout.conditions.from_files import names_files, with_tables
 from catenary_fe.layout.conditions.gusts import GustLoads
 from catenary_fe.layout.conditions.ice import Ice, IceMass
 from catenary_fe.layout.conditions.irregularity import ContactWireIrregularity, UnevenSurface
+from catenary_fe.layout.conditions.measured_wind import MeasuredWindLoads
 from catenary_fe.layout.conditions.temperature import Warming
 from catenary_fe.layout.conditions.wind import Drag, Gusts, Wind
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import Parameters, Positive, Text, problem_lines
-from catenary_fe.layout.toml import read_toml
+from catenary_fe.layout.toml import read_toml, toml_value
 
 
 class Case(Parameters):
@@ -54,6 +57,8 @@ class Conditions(Parameters):
     """on the wires; unset: none"""
     irregularity: ContactWireIrregularity | None = None
     """of the contact wire's running surface, in runs; unset: even"""
+    base: BaseMotion | None = None
+    """vertical motion of the pantographs' bases, in runs; unset: none"""
     allowed_offset: Positive | None = None
     """[m] of the contact wire from the track's centre, which `cases` judges; unset: any"""
     case: tuple[Case, ...] = ()
@@ -92,10 +97,14 @@ class Conditions(Parameters):
             found.append(IceMass(self.ice))
         if self.irregularity:
             found.append(UnevenSurface(self.irregularity))
+        if self.base:
+            found.append(MovingBase(self.base))
         if self.wind:
             found.append(Drag(self.wind, self.ice))
             if self.wind.gusts and self.wind.blows:
                 found.append(GustLoads(self.wind, self.ice))
+            if self.wind.record and self.wind.blows:
+                found.append(MeasuredWindLoads(self.wind, self.ice))
         return found
 
 
@@ -110,12 +119,24 @@ def _merged(record: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
 
 @checked
 def load_conditions(path: str | Path) -> Conditions:
-    """Conditions from a TOML file. Raises InputError, one line for each fault that the file has."""
-    record = read_toml(Path(path), "conditions")
+    """Conditions from a TOML file, with the CSV tables that it names.
+
+    Raises InputError, one line for each fault that the files have.
+    """
+    record = with_tables(read_toml(Path(path), "conditions"), Path(path).parent)
     try:
         return Conditions.model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, Conditions, where=str(path))) from None
+
+
+def conditions_text(path: str | Path) -> bytes:
+    """A conditions file's content; where it names other files, with what they say in their place."""
+    record = read_toml(Path(path), "conditions")
+    if not names_files(record):
+        return Path(path).read_bytes()
+    whole = with_tables(record, Path(path).parent)
+    return "".join(f"{key} = {toml_value(value)}\n" for key, value in whole.items()).encode()
 
 
 def conditions_schema() -> dict[str, Any]:
@@ -124,14 +145,18 @@ def conditions_schema() -> dict[str, Any]:
 
 
 __all__ = [
+    "BaseMotion",
+    "BaseSignal",
     "Conditions",
     "ContactWireIrregularity",
     "Effect",
     "Gusts",
     "Ice",
+    "VehicleSuspension",
     "Wind",
     "WirePart",
     "conditions_schema",
+    "conditions_text",
     "load_conditions",
     "over_x",
 ]

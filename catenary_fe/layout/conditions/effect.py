@@ -15,10 +15,12 @@ from catenary_fe.layout.parts import Wire
 
 Floats = NDArray[np.float64]
 Signal = Callable[[Floats], Floats]
+BaseSignal = Callable[[float, float, Floats], Floats]
 WireKind = Literal["contact_wire", "messenger_wire", "stitch_wire"]
 COPPER = 8900.0  # [kg/m³]
-_OR_TABLE = ", or a list of [x, value] pairs"
+_OR_TABLE = ", or a list of [x, value] pairs, or in a file the name of a .csv table"
 ROPE_FILL = 0.76  # of a rope's circle: 19 and 37 wires
+A_FILE: dict[str, Any] = {"type": "string", "pattern": r"\.[cC][sS][vV]$"}  # in a file of conditions
 
 
 def outer_diameter(wire: Wire, *, rope: bool = False) -> float:
@@ -86,46 +88,57 @@ class Effect:
         """Loads [N/m], shape (3, places), each with its signal of times [s], shape (times,)."""
         return ()
 
+    def base_motion(self) -> BaseSignal | None:
+        """Heights [m] of a pantograph's base from its start [m], its speed [m/s] and even times [s], if any.
 
-def _over_x(least: float, most: float) -> PlainValidator:
-    return PlainValidator(check_over_x(least, most))
-
-
-def check_over_x(least: float, most: float) -> Callable[[Any], NumberOrTable]:
-    """Takes a number between two bounds, or a table of [x, number] pairs in order; raises ValueError."""
-
-    def check(value: Any) -> float | Table:
-        if not isinstance(value, (list, tuple)):
-            return _number(value, least, most, "")
-        if not value:
-            raise ValueError("is empty; give [x, value] pairs, or a number")
-        found: list[tuple[float, float]] = []
-        for n, pair in enumerate(value, start=1):
-            if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-                raise ValueError(f"entry {n}: {shorten(pair)}: must be a pair [x, value]")
-            x = _number(pair[0], -LARGEST, LARGEST, f"entry {n}: x ")
-            if found and x <= found[-1][0]:
-                raise ValueError(
-                    f"entry {n}: x = {x:g} m does not come after {found[-1][0]:g} m; list the places in order"
-                )
-            found.append((x, _number(pair[1], least, most, f"entry {n}: value ")))
-        return tuple(found)
-
-    return check
+        They have the shape of the times, which count from the start on.
+        """
+        return None
 
 
-def _schema(least: float, most: float) -> WithJsonSchema:
-    return WithJsonSchema(schema_over_x(least, most))
+def table_over_x(value: Any, least: float, most: float) -> float | Table:
+    """A number between two bounds, or a table of [x, number] pairs in order. Raises ValueError."""
+    if not isinstance(value, (list, tuple)):
+        return number_between(value, least, most, "")
+    if not value:
+        raise ValueError("is empty; give [x, value] pairs, or a number")
+    return pairs_in_order(value, least, most, "x", "m")
 
 
-def schema_over_x(least: float, most: float) -> dict[str, Any]:
-    """What an editor checks of it."""
+def pairs_in_order(value: Any, least: float, most: float, name: str, unit: str) -> Table:
+    """Pairs of places or times, and numbers between two bounds. Raises ValueError."""
+    if not isinstance(value, (list, tuple)) or not value:
+        raise ValueError(f"{shorten(value)}: must be a list of [{name}, value] pairs")
+    found: list[tuple[float, float]] = []
+    for n, pair in enumerate(value, start=1):
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+            raise ValueError(f"entry {n}: {shorten(pair)}: must be a pair [{name}, value]")
+        at = number_between(pair[0], -LARGEST, LARGEST, f"entry {n}: {name} ")
+        if found and at <= found[-1][0]:
+            last, what = found[-1][0], "places" if name == "x" else "times"
+            raise ValueError(
+                f"entry {n}: {name} = {at:g} {unit} does not come after {last:g} {unit}; list the {what} in"
+                " order"
+            )
+        found.append((at, number_between(pair[1], least, most, f"entry {n}: value ")))
+    return tuple(found)
+
+
+def schema_over_x(least: float, most: float, *more: dict[str, Any]) -> dict[str, Any]:
+    """What an editor checks of it, or of the name of a file in its place."""
+    number = {"type": "number", "minimum": least, "maximum": most}
+    return {"anyOf": [number, schema_of_pairs(least, most), *more, A_FILE]}
+
+
+def schema_of_pairs(least: float, most: float) -> dict[str, Any]:
+    """Of a list of pairs."""
     number = {"type": "number", "minimum": least, "maximum": most}
     pair = {"type": "array", "prefixItems": [{"type": "number"}, number], "minItems": 2, "maxItems": 2}
-    return {"anyOf": [number, {"type": "array", "items": pair}]}
+    return {"type": "array", "items": pair}
 
 
-def _number(value: Any, least: float, most: float, what: str) -> float:
+def number_between(value: Any, least: float, most: float, what: str) -> float:
+    """The value as a number. Raises ValueError that begins with what it is, and the value."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
         rule = "a number" + (f" from {least:g}" if least > -LARGEST else "")
         rule += f" to {most:g}" if most < LARGEST else ""
@@ -135,11 +148,18 @@ def _number(value: Any, least: float, most: float, what: str) -> float:
 
 Table = tuple[tuple[float, float], ...]
 NumberOrTable = float | Table
-_AS_IT_IS = PlainSerializer(lambda value: value, return_type=Any)  # pydantic expects no list of lists
-OverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, LARGEST), _schema(0.0, LARGEST)]
-SpeedOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(0.0, 100.0), _schema(0.0, 100.0)]  # [m/s]
-SurfaceOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-0.1, 0.1), _schema(-0.1, 0.1)]  # [m]
-TemperatureOverX = Annotated[NumberOrTable, _AS_IT_IS, _over_x(-100.0, 150.0), _schema(-100.0, 150.0)]
+AS_IT_IS = PlainSerializer(lambda value: value, return_type=Any)  # pydantic expects no list of lists
+
+
+def _over_x(least: float, most: float) -> tuple[Any, ...]:
+    check = PlainValidator(lambda value: table_over_x(value, least, most))
+    return AS_IT_IS, check, WithJsonSchema(schema_over_x(least, most))
+
+
+OverX = Annotated[NumberOrTable, *_over_x(0.0, LARGEST)]
+SurfaceOverX = Annotated[NumberOrTable, *_over_x(-0.1, 0.1)]  # [m]
+BaseOverX = Annotated[NumberOrTable, *_over_x(-0.5, 0.5)]  # [m]
+TemperatureOverX = Annotated[NumberOrTable, *_over_x(-100.0, 150.0)]
 
 
 def over_x(values: NumberOrTable, x: Floats) -> Floats:

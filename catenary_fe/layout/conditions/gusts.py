@@ -81,7 +81,7 @@ class GustLoads(Effect):
         history, mean = self._field(), self._mean
         steady = self.wind.across(part.x)
         slope = 2 * self.wind.resistance(part, self.ice) * np.abs(steady)
-        slope = slope * over_x(self.wind.speed, part.x) / mean * self.wind.across_share
+        slope = slope * over_x(self.wind.steady, part.x) / mean * self.wind.across_share
         first, last = int(np.floor(part.x[0] / BETWEEN)), int(np.ceil(part.x[-1] / BETWEEN))
         found = []
         for place in range(first, last + 1):
@@ -95,7 +95,7 @@ class GustLoads(Effect):
     @property
     def _mean(self) -> float:
         """[m/s] that the field is made for; where the wind is stronger its gusts are, too."""
-        speed = self.wind.speed
+        speed = self.wind.steady
         return float(np.mean([v for _, v in speed]) if isinstance(speed, tuple) else speed)
 
     def _field(self) -> _History:

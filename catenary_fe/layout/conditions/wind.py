@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from functools import cached_property
+from typing import Annotated, Self, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from catenary_fe.layout.conditions.effect import Effect, Floats, SpeedOverX, WirePart, over_x
+from catenary_fe.layout.conditions.effect import AS_IT_IS, Effect, Floats, NumberOrTable, WirePart, over_x
 from catenary_fe.layout.conditions.ice import Ice, iced_diameter
+from catenary_fe.layout.conditions.wind_record import SPEED, Rows, WindRecord
 from catenary_fe.layout.parameters import NonNegative, Parameters, Positive
 
 
@@ -38,8 +40,9 @@ class Wind(Parameters):
     there is any (Kießling, Puschmann, Schmieder: Contact Lines for Electric Railways; EN 50119).
     """
 
-    speed: SpeedOverX
-    """[m/s] at the wires, or a table over x: [[0, 20], [300, 29]]"""
+    speed: Annotated[NumberOrTable | Rows, AS_IT_IS, *SPEED]
+    """[m/s] at the wires, or a table over x: [[0, 20], [300, 29]]; or as it was measured, rows of a time [s],
+    a place x [m] and the speed there, whose mean is the steady wind, and from whose first time runs begin"""
     direction: Direction = 90.0
     """[°] to which it blows from the line's direction: 90: from the right to the left; -90: to the right"""
     air_density: Positive = 1.25
@@ -51,6 +54,23 @@ class Wind(Parameters):
     gusts: Gusts | None = None
     """in runs, which then begin with the wires at rest in the first gust; unset: steady wind"""
 
+    @model_validator(mode="after")
+    def _vary_once(self) -> Self:
+        if self.record and self.gusts:
+            raise ValueError("gusts beside a speed measured over time: both vary the wind; leave out one")
+        return self
+
+    @cached_property
+    def record(self) -> WindRecord | None:
+        """Of a speed measured over time; else none."""
+        speed = self.speed
+        return WindRecord(speed) if isinstance(speed, tuple) and len(speed[0]) == 3 else None
+
+    @property
+    def steady(self) -> NumberOrTable:
+        """[m/s], or a table over x: the mean over time."""
+        return self.record.steady if self.record else cast(NumberOrTable, self.speed)
+
     @property
     def across_share(self) -> float:
         """[1] of the speed that blows to the left."""
@@ -59,12 +79,13 @@ class Wind(Parameters):
     @property
     def blows(self) -> bool:
         """Whether it does anything to the wires."""
-        values = [v for _, v in self.speed] if isinstance(self.speed, tuple) else [self.speed]
+        steady = self.steady
+        values = [v for _, v in steady] if isinstance(steady, tuple) else [steady]
         return bool(max(values) > 0 and abs(self.across_share) > 1e-9)
 
     def across(self, x: Floats) -> Floats:
         """[m/s], shape of x: to the left."""
-        return over_x(self.speed, x) * self.across_share
+        return over_x(self.steady, x) * self.across_share
 
     def resistance(self, part: WirePart, ice: Ice | None) -> Floats:
         """[N s²/m³], shape (places,): drag a metre over the speed's square."""
