@@ -96,7 +96,10 @@ def add_pantograph(
     pantograph: Any,
 ) -> PantographParts:
     """Add whatever assembles as a pantograph. Its weight is balanced by its frame."""
-    assembled, axes = pantograph.assemble(spatial=system.spatial), system.axes
+    assembled, axes = (
+        pantograph.assemble(spatial=system.spatial, height=system.contact_wire_height),
+        system.axes,
+    )
     nominal = system.contact_wire_height * np.eye(3)[axes - 1]
     bodies, coordinates, roll_places = [], [], []
     for body in assembled.bodies:

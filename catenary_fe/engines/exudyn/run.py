@@ -100,7 +100,13 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
     q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if own:
         records = case.pantographs[:known]
-        placed = place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
+        placed = place(
+            records,
+            uplifts[:known],
+            case.start[:known],
+            spatial=system.spatial,
+            height=system.contact_wire_height,
+        )
         placed = [replace(p, base=base) for p, base in zip(placed, bases, strict=False)]
         moved, placed = static_contact(system, placed)
         q[: system.dof.size] = moved

@@ -59,7 +59,13 @@ class NonlinearEngine:
 
     def begin(self, case: RunCase, uplifts: Floats, steps: int) -> NonlinearRun:
         """A run of so many steps, in static contact at its start. Raises SolverError where there is none."""
-        placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
+        placed = place(
+            case.pantographs,
+            uplifts,
+            case.start,
+            spatial=self._system.spatial,
+            height=self._system.contact_wire_height,
+        )
         placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
         moved, placed = static_contact(self._system, placed)
         return NonlinearRun(self, moved, placed, case.speed, steps)
