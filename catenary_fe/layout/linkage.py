@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.parameters import NonEmpty, NonNegative, Number, Parameters, Positive
+from catenary_fe.layout.parameters import GRAVITY, NonEmpty, NonNegative, Number, Parameters, Positive
 from catenary_fe.layout.pushed import Panhead, PushedPantograph, Stage
 from catenary_fe.layout.substructure import (
     BASE,
@@ -20,6 +20,7 @@ from catenary_fe.layout.substructure import (
     ContactLaw,
     Joint,
     Law,
+    Mechanism,
     Strip,
     Substructure,
 )
@@ -221,8 +222,7 @@ class LinkagePantograph(PushedPantograph):
             pull = np.interp(angles, at, of)
         else:
             pull = np.full(angles.shape, torque)
-        head = sum(stage.mass for stage in self.head_stages) * 9.81
-        found: Floats = pull / np.abs(rise) - self.linkage.weight(angles) - head
+        found: Floats = pull / np.abs(rise) - self.linkage.weight(angles) - self._head_weight
         return found
 
     def static_uplift(self, speed: float) -> float:
@@ -285,7 +285,20 @@ class LinkagePantograph(PushedPantograph):
             contact=ContactLaw(self.contact_stiffness, self.contact_damping),
             follows=False,
             frame=Law(FRAME, tuple(row), *table),
+            mechanism=self._mechanism(apex),
         )
+
+    def _mechanism(self, apex: float) -> Mechanism:
+        torque = self.drive.torque
+        if torque is None:
+            return Mechanism(self.linkage, apex)
+        own = float(self.lift(self.linkage.angle_at(self._apex(self.working_height))))
+        return Mechanism(self.linkage, apex, torque, own, self._head_weight)
+
+    @property
+    def _head_weight(self) -> float:
+        """[N] of what stands on the apex."""
+        return GRAVITY * sum(stage.mass for stage in self.head_stages)
 
     def _heights(self) -> Floats:
         """[m] of the apex above the base pivot, even, at which mass and force are tabulated."""

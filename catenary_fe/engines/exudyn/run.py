@@ -112,6 +112,8 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
         q[: system.dof.size] = moved
         for parts, where in zip(own, placed, strict=True):
             q[parts.index(mbs)] = where.heights
+            if parts.frame:
+                parts.frame.follow(mbs, q)
     else:
         q[: system.dof.size] = 0.0
     model.load_at(0.0)
@@ -397,5 +399,5 @@ class _EnergyBalance:
         total = system.energy(q[: self._line]) + float(moving @ (system.mass @ moving) / 2)
         for _, body, index, uplift in self._bodies:
             y, w = q[index], v[index]
-            total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - uplift * body.load @ y)
+            total += body.energy(y, w) - uplift * float(body.load @ y)
         return total
