@@ -311,7 +311,7 @@ class LinkagePantograph(PushedPantograph):
         from scipy.interpolate import CubicSpline
 
         heights = self._heights()
-        angles = np.array([self.linkage.angle_at(float(z)) for z in heights])
+        angles = self.linkage.angles_at(heights)
         mass = CubicSpline(heights, self.linkage.mass(angles))
         missing = np.zeros(heights.size)
         if self.drive.torque is not None:
