@@ -24,15 +24,16 @@ from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.joining import mesh_of
 from catenary_fe.fe.mesh import MeshSettings
-from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
+from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, Conditions, InputError, SolverError
 from catenary_fe.layout.arguments import whole
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.statics import Shape, find_form
+from catenary_fe.statics import Shape, find_form, settle
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.studies.simulate import Method, simulate
+from catenary_fe.studies.sweep_force import force_along
 from catenary_fe.studies.sweep_store import Record, Store, open_store
 
 Progress = Callable[[int, int], None]
@@ -43,12 +44,16 @@ RESULTS = 3  # rises when the same inputs give other results: cases that were ke
 
 @dataclass(frozen=True, kw_only=True)
 class SweepSettings:
-    """What all cases of a sweep have in common."""
+    """What all cases of a sweep have in common.
+
+    keep_force : records have the filtered contact force along the evaluated spans, too, as ``force``
+    """
 
     method: Method = "linearised"
     mesh: MeshSettings = field(default_factory=MeshSettings)
     time: TimeSettings = field(default_factory=TimeSettings)
     filter: FilterKind = "causal"
+    keep_force: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +62,7 @@ class SweepCase:
 
     values : what tells it from the others, by column of the table
     positions : [m] of the pantographs at the start, empty for one near the first support
+    conditions : that the line is under, without further cases
     """
 
     values: dict[str, Any]
@@ -64,6 +70,7 @@ class SweepCase:
     pantographs: tuple[AnyPantograph, ...]
     speed: float
     positions: tuple[float, ...] = ()
+    conditions: Conditions | None = None
 
     def key(self, settings: SweepSettings) -> str:
         """A name that is the same only for the same inputs."""
@@ -74,6 +81,7 @@ class SweepCase:
             json.dumps(asdict(settings), sort_keys=True),
             version("catenary_fe"),
             str(RESULTS),
+            *([self.conditions.model_dump_json()] if self.conditions else []),
         ]
         return hashlib.sha256("\n".join(inputs).encode()).hexdigest()[:20]
 
@@ -161,12 +169,12 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
 
 
 def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
-    """Numbers of cases to run together: of one catenary, of similar length, no more than fill the slots."""
+    """Numbers of cases to run together: of one line, of similar length, no more than fill the slots."""
     if settings.method != "linearised":
         return [[i] for i in cases]
-    groups: dict[Catenary, list[int]] = {}
+    groups: dict[tuple[Catenary, Conditions | None], list[int]] = {}
     for i, case in cases.items():
-        groups.setdefault(case.catenary, []).append(i)
+        groups.setdefault((case.catenary, case.conditions), []).append(i)
     tasks = []
     for group in groups.values():
         group.sort(key=lambda i: cases[i].speed)
@@ -297,7 +305,7 @@ def _engine(scheduler: str | None) -> Iterator[None]:
 def _run_task(
     numbers: list[int], cases: Sequence[SweepCase], settings: SweepSettings
 ) -> tuple[list[int], list[Record]]:
-    """Run cases of one catenary; what fails is recorded, not raised."""
+    """Run cases of one line; what fails is recorded, not raised."""
     try:
         with _without_warnings():
             if settings.method == "linearised":
@@ -323,7 +331,7 @@ def _without_warnings() -> Iterator[None]:
 
 
 def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
-    line = _linearised(cases[0].catenary, settings.mesh, settings.time)
+    line = _linearised(cases[0].catenary, settings.mesh, cases[0].conditions, settings.time)
     records: list[Record] = []
     good: list[RunCase] = []
     for case in cases:
@@ -339,7 +347,7 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
 
 def _run_alone(case: SweepCase, settings: SweepSettings) -> Record:
     try:
-        shape = _shape(case.catenary, settings.mesh)
+        shape = _settled(case.catenary, settings.mesh, case.conditions)
         run = simulate(
             shape,
             case.pantographs,
@@ -361,7 +369,9 @@ def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
         del summary[key]  # a table is the same whenever and wherever it was computed
     for i, pantograph in enumerate(summary["pantographs"]):
         pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
-    return {"summary": summary}
+    return {"summary": summary} | (
+        {"force": force_along(result, settings.filter)} if settings.keep_force else {}
+    )
 
 
 def _failed(error: CatenaryError) -> Record:
@@ -374,5 +384,13 @@ def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
 
 
 @lru_cache(maxsize=2)
-def _linearised(catenary: Catenary, mesh: MeshSettings, time: TimeSettings) -> LinearisedLine:
-    return LinearisedLine(_shape(catenary, mesh), time)
+def _settled(catenary: Catenary, mesh: MeshSettings, conditions: Conditions | None) -> Shape:
+    shape = _shape(catenary, mesh)
+    return settle(shape, conditions) if conditions else shape
+
+
+@lru_cache(maxsize=2)
+def _linearised(
+    catenary: Catenary, mesh: MeshSettings, conditions: Conditions | None, time: TimeSettings
+) -> LinearisedLine:
+    return LinearisedLine(_settled(catenary, mesh, conditions), time)
