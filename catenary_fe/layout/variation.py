@@ -139,6 +139,28 @@ def replace_at(record: dict[str, Any], place: str, value: Any) -> None:
             holder[key] = value
 
 
+def places_of(record: dict[str, Any], place: str, model: type[BaseModel]) -> list[str]:
+    """Places of single members that a place stands for, ``*`` written out.
+
+    Raises InputError for a place that does not exist.
+    """
+    trial = copy.deepcopy(record)
+    _make_tables(trial, place, model)
+    replace_at(trial, place, None)
+    steps = place.split(".")
+    found: list[tuple[list[str], Any]] = [([], record)]
+    for n, step in enumerate(steps):
+        inside: list[tuple[list[str], Any]] = []
+        for path, holder in found:
+            if isinstance(holder, dict) or (holder is None and step != "*"):
+                inside.append(([*path, step], (holder or {}).get(step)))
+            else:
+                keys = _keys(holder, step, place, steps[:n])
+                inside += [([*path, str(key + 1)], holder[key]) for key in keys]
+        found = inside
+    return [".".join(path) for path, _ in found]
+
+
 def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False) -> list[Any]:
     """What a step of a place means inside a table or a list.
 

@@ -33,7 +33,7 @@ from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.studies.simulate import Method, simulate
-from catenary_fe.studies.sweep_force import force_along
+from catenary_fe.studies.sweep_figures import force_along
 from catenary_fe.studies.sweep_store import Record, Store, open_store
 
 Progress = Callable[[int, int], None]
