@@ -15,9 +15,15 @@ from docutils.parsers.rst import Directive
 from catenary_fe.layout.conditions import conditions_schema
 from catenary_fe.layout.files import layout_schema, pantograph_schema
 from catenary_fe.layout.parameters import LARGEST
+from catenary_fe.layout.study import study_schema
 from catenary_fe.results.quantities import FORCE, OF_RUN
 
-SCHEMAS = {"layout": layout_schema, "pantograph": pantograph_schema, "conditions": conditions_schema}
+SCHEMAS = {
+    "layout": layout_schema,
+    "pantograph": pantograph_schema,
+    "conditions": conditions_schema,
+    "study": study_schema,
+}
 EXAMPLES = Path(__file__).parent / "reference" / "examples"
 _UNIT = re.compile(r"\[([^\]]+)\],?\s*")
 _HEADS = "Key", "Unit", "Default", "Allowed", "Meaning", "Example"

@@ -108,7 +108,7 @@ def sweep(  # long: an argument an option
         keep_force=keep_force,
     )
     cases = _cases(Variable(layout, conditions), axes, positions, spans)
-    with progress_bar(counted(count, "case"), not answer.quiet) as progress, _kept(output):
+    with progress_bar(counted(count, "case"), not answer.quiet) as progress, kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -159,8 +159,8 @@ def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
 
 
 @contextmanager
-def _kept(output: str) -> Iterator[None]:
-    """Say what a stopped sweep leaves behind."""
+def kept(output: str) -> Iterator[None]:
+    """Say what a stopped sweep or study leaves behind."""
     try:
         yield
     except KeyboardInterrupt:

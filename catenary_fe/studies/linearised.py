@@ -142,10 +142,17 @@ class LinearisedLine:
         model = linear_model(shape.system)
         self.engine = LinearisedEngine(shape.system, model, self.time, store_wire)
 
-    def run(self, cases: Sequence[RunCase], progress: Progress | None = None) -> list[Run | CatenaryError]:
+    def run(
+        self,
+        cases: Sequence[RunCase],
+        progress: Progress | None = None,
+        *,
+        part_of: int | None = None,
+    ) -> list[Run | CatenaryError]:
         """Run all cases; where one fails, its error stands in its place.
 
         progress : called with the share done, 0 to 1
+        part_of : number of cases that these are some of, see :meth:`LinearisedEngine.run`
         """
         tasks: list[_Task] = []
         results: list[Run | CatenaryError | _Task] = []
@@ -155,7 +162,7 @@ class LinearisedLine:
                 results.append(tasks[-1])
             except CatenaryError as error:
                 results.append(error)
-        self.engine.run(tasks, progress)
+        self.engine.run(tasks, progress, part_of=part_of)
         found = [result.result if isinstance(result, _Task) else result for result in results]
         return [result for result in found if result is not None]
 

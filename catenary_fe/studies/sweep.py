@@ -11,7 +11,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -63,6 +63,7 @@ class SweepCase:
     values : what tells it from the others, by column of the table
     positions : [m] of the pantographs at the start, empty for one near the first support
     conditions : that the line is under, without further cases
+    part_of : cases that the sweep has of this line, which it sets itself; see :meth:`LinearisedEngine.run`
     """
 
     values: dict[str, Any]
@@ -71,6 +72,7 @@ class SweepCase:
     speed: float
     positions: tuple[float, ...] = ()
     conditions: Conditions | None = None
+    part_of: int | None = None
 
     def key(self, settings: SweepSettings) -> str:
         """A name that is the same only for the same inputs."""
@@ -129,7 +131,9 @@ def run_sweep(
         done = len(cases) - len(missing)
         if done:
             _log.info("%d of %d cases are there already", done, len(cases))
-        to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
+        whole_lines = {i: case for i, case in enumerate(cases) if isinstance(case, SweepCase)}
+        sizes = {i: len(group) for group in _by_line(whole_lines) for i in group}
+        to_run = {i: replace(whole_lines[i], part_of=sizes[i]) for i in missing}
         workers = (os.cpu_count() or 1) if jobs == -1 else whole("jobs", jobs, least=1)
         if to_run and not scheduler:
             needs = _largest_demand(list(to_run.values()), settings)
@@ -168,15 +172,19 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
     return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, slots)
 
 
+def _by_line(cases: Mapping[int, SweepCase]) -> list[list[int]]:
+    groups: dict[tuple[Catenary, Conditions | None], list[int]] = {}
+    for i, case in cases.items():
+        groups.setdefault((case.catenary, case.conditions), []).append(i)
+    return list(groups.values())
+
+
 def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
     """Numbers of cases to run together: of one line, of similar length, no more than fill the slots."""
     if settings.method != "linearised":
         return [[i] for i in cases]
-    groups: dict[tuple[Catenary, Conditions | None], list[int]] = {}
-    for i, case in cases.items():
-        groups.setdefault((case.catenary, case.conditions), []).append(i)
-    tasks = []
-    for group in groups.values():
+    groups, tasks = _by_line(cases), []
+    for group in groups:
         group.sort(key=lambda i: cases[i].speed)
         parts = max(int(np.ceil(len(group) / SLOTS)), min(workers // len(groups), len(group)))
         tasks += [part.tolist() for part in np.array_split(group, parts)]
@@ -341,7 +349,7 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))
-    results = iter(line.run(good))
+    results = iter(line.run(good, part_of=cases[0].part_of))
     return [record or _record(next(results), settings) for record in records]
 
 
