@@ -190,6 +190,6 @@ def plot_sensitivity(rows: Rows, pantograph: str, number: int = 1) -> Axes:
         ax.set_yticks(np.arange(len(places)), places, fontsize=7)
         ax.invert_yaxis()
         ax.axvline(0.0, color=_NOMINAL, linewidth=0.8)
-        style.finish(ax, "share of the variance (1), with 95 % confidence", "", names[figure])
+        style.finish(ax, "share of the variance, with 95 % confidence", "", names[figure])
     panels[-1].legend(fontsize=7)
     return panels[0]
