@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import difflib
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, get_args
 
@@ -109,9 +110,11 @@ def _changed(record: dict[str, Any], name: str, changes: dict[str, Any], model: 
 
 
 def _make_tables(record: dict[str, Any], place: str, model: type[BaseModel]) -> None:
-    """The tables on the way to a key, where a file may leave them out."""
+    """The tables on the way to a key, where a file may leave them out. Raises InputError for unknown ones."""
     for step in place.split(".")[:-1]:
         field = model.model_fields.get(step)
+        if field is None:
+            raise InputError(f"{place}: no '{step}' to vary a value of; {_near(step, model.model_fields)}")
         kinds = (field.annotation, *get_args(field.annotation)) if field else ()
         inner = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), None)
         if inner is None or not isinstance(record.setdefault(step, {}), dict):
@@ -161,6 +164,12 @@ def places_of(record: dict[str, Any], place: str, model: type[BaseModel]) -> lis
     return [".".join(path) for path, _ in found]
 
 
+def _near(step: str, known: Iterable[str]) -> str:
+    """The nearest of the known keys, or all of them."""
+    near = difflib.get_close_matches(step, list(known), n=1)
+    return f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
+
+
 def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False) -> list[Any]:
     """What a step of a place means inside a table or a list.
 
@@ -169,10 +178,7 @@ def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False
     """
     if isinstance(holder, dict):
         if step not in holder and not new:
-            near = difflib.get_close_matches(step, holder, n=1)
-            there = ", ".join(holder) or "nothing yet; write its table first"
-            hint = f"did you mean '{near[0]}'?" if near else f"there are: {there}"
-            raise InputError(f"{place}: no '{step}' to vary a value of; {hint}")
+            raise InputError(f"{place}: no '{step}' to vary a value of; {_near(step, holder)}")
         return [step]
     before = ".".join(path)
     if not isinstance(holder, list):

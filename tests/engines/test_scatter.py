@@ -29,6 +29,7 @@ pantographs = ["EN 50318:2002"]
 speed_kmh = [200]
 """
 UPLIFT = '"pantograph.uplift_force" = { uniform = [100.0, 140.0] }\n'
+COARSE = "--time-step-ms", "4", "--element-m", "4"
 TABLES = "scatter.csv", "bands.csv", "force_band.csv", "scatter.json"
 
 
@@ -127,7 +128,7 @@ def test_shares_of_variance_of_a_linear_figure(study, tmp_path):
 
 
 def command(path, out, *options):
-    return main(["scatter", str(path), "--samples", "4", "-o", str(out), "--quiet", *options])
+    return main(["scatter", str(path), "--samples", "4", "-o", str(out), "--quiet", *COARSE, *options])
 
 
 def contents(folder):
@@ -167,8 +168,8 @@ def test_a_line_whose_runs_go_side_by_side_gives_the_same_bytes_in_parts(study, 
 
 def test_a_killed_study_goes_on_to_the_same_table(study, tmp_path):
     path = study('"contact_wire.tension" = { relative_uniform = 0.05 }\n')
-    arguments = [sys.executable, "-m", "catenary_fe", "scatter", str(path), "--samples", "6", "--jobs", "1",
-                 "--quiet", "-o"]  # fmt: skip
+    arguments = [sys.executable, "-m", "catenary_fe", "scatter", str(path), "--samples", "5", "--jobs", "1",
+                 "--quiet", *COARSE, "-o"]  # fmt: skip
     out = tmp_path / "killed"
     process = subprocess.Popen([*arguments, str(out)], stderr=subprocess.DEVNULL)
     for _ in range(600):
