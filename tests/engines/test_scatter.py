@@ -136,7 +136,7 @@ def contents(folder):
 
 
 def test_the_same_bytes_with_one_and_two_processes_and_in_parts(study, tmp_path, monkeypatch):
-    path = study(UPLIFT + '"span.*.droppers.*" = { normal = 0.2 }\n')
+    path = study(UPLIFT + '"as_built.dropper_length" = { normal = 0.002 }\n')
     assert command(path, tmp_path / "one", "--jobs", "1") == 0
     assert command(path, tmp_path / "two", "--jobs", "2") == 0
     # one case is lost as if the study had been killed before it: the others are kept
@@ -151,7 +151,7 @@ def test_the_same_bytes_with_one_and_two_processes_and_in_parts(study, tmp_path,
     assert sum(ran) == 2
     one = contents(tmp_path / "one")
     assert one == contents(tmp_path / "two") == contents(tmp_path / "parts")
-    again = study(UPLIFT + '"span.*.droppers.*" = { normal = 0.2 }\n', HEAD + "seed = 2\n")
+    again = study(UPLIFT + '"as_built.dropper_length" = { normal = 0.002 }\n', HEAD + "seed = 2\n")
     assert command(again, tmp_path / "other", "--jobs", "1") == 0
     assert contents(tmp_path / "other") != one
 
