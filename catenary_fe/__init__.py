@@ -98,7 +98,6 @@ if TYPE_CHECKING:
     )
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import Session, modal_run, simulate, solve_modes, stepping
-    from catenary_fe.studies import modal_run, simulate, solve_modes
     from catenary_fe.studies.scatter import Scatter, run_scatter
     from catenary_fe.studies.single_wire import run_wire
 

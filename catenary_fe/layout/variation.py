@@ -12,7 +12,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from catenary_fe.layout.catenary import Catenary
-from catenary_fe.layout.conditions import Conditions, load_conditions, one_of_a_run
+from catenary_fe.layout.conditions import Conditions, conditions_record, load_conditions, one_of_a_run
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph
 from catenary_fe.layout.pantograph import DescribedPantograph
@@ -45,7 +45,7 @@ class Variable:
         self._has_conditions, self._conditions_path = conditions is not None, str(conditions or "conditions")
         self.conditions_record: dict[str, Any] = {}
         if conditions is not None:
-            self.conditions_record = read_toml(Path(conditions), "conditions")
+            self.conditions_record = conditions_record(conditions)
             one_of_a_run(load_conditions(conditions), conditions)
 
     def catenary(self, values: dict[str, Any]) -> Catenary:

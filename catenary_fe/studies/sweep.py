@@ -6,9 +6,6 @@ import hashlib
 import json
 import logging
 import os
-import signal
-import threading
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
@@ -24,13 +21,14 @@ from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.joining import mesh_of
 from catenary_fe.fe.mesh import MeshSettings
-from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, Conditions, InputError, SolverError
+from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, Conditions, SolverError
 from catenary_fe.layout.arguments import whole
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape, find_form, settle
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
+from catenary_fe.studies.processes import deadly, manager_may_stumble, processes_of
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.studies.simulate import Method, simulate
 from catenary_fe.studies.sweep_figures import force_along
@@ -212,7 +210,7 @@ def _spread(
             for numbers, found in _in_parallel(batch, cases, settings, processes, scheduler):
                 left.remove(numbers)
                 yield numbers, found
-        except _deadly(scheduler):
+        except deadly(scheduler):
             deaths += 1
             _log.warning("a worker process died; what it was at is tried again")
             if not alone:
@@ -232,7 +230,7 @@ def _in_parallel(
 ) -> Iterator[tuple[list[int], list[Record]]]:
     from joblib import Parallel, delayed
 
-    with _engine(scheduler), _manager_may_stumble():
+    with processes_of(scheduler), manager_may_stumble():
         parallel = Parallel(
             n_jobs=-1 if scheduler else processes,
             return_as="generator_unordered",
@@ -242,72 +240,12 @@ def _in_parallel(
         yield from parallel(delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C goes to all processes of a terminal: the one that started the others ends them."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def _manager_may_stumble() -> Iterator[None]:
-    """Say nothing where work that is taken away at an interruption trips up the thread that hands it out.
-
-    Nor that it is taken away.
-    """
-    usual = threading.excepthook
-
-    def hook(caught: threading.ExceptHookArgs) -> None:
-        if not (type(caught.thread).__name__ == "_ExecutorManagerThread" and caught.exc_type is KeyError):
-            usual(caught)
-
-    threading.excepthook = hook
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
-            yield
-    finally:
-        threading.excepthook = usual
-
-
-def _deadly(scheduler: str | None) -> tuple[type[Exception], ...]:
-    """What is raised where a worker process dies."""
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    if scheduler is None:
-        return (TerminatedWorkerError,)
-    from dask.distributed import KilledWorker
-
-    return TerminatedWorkerError, KilledWorker
-
-
 def _lost() -> Record:
     error = SolverError(
         "the process that ran this case was killed, also when it ran alone, perhaps for lack of memory; start"
         " the sweep again to try once more, on a larger machine or with a shorter line"
     )
     return _failed(error) | {LOST: True}
-
-
-@contextmanager
-def _engine(scheduler: str | None) -> Iterator[None]:
-    import joblib
-
-    if scheduler is None:
-        with joblib.parallel_config("loky", initializer=_leave_interrupts):
-            yield
-        return
-
-    try:
-        from dask.distributed import Client
-    except ImportError:
-        raise InputError(
-            f"scheduler {scheduler}: Dask is not installed here; install catenary_fe with the extra 'cluster'"
-        ) from None
-    try:
-        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(f"scheduler {scheduler}: no Dask cluster answers there ({error})") from None
-    with client, joblib.parallel_config("dask"):
-        yield
 
 
 def _run_task(

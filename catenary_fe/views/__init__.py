@@ -37,10 +37,8 @@ __all__ = [
     "plot_dropper_forces", "plot_elasticity", "plot_energy",
     "plot_family", "plot_force_bands", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
     "plot_layout", "plot_line_test",
-    "plot_mode", "plot_pantograph", "plot_plan", "plot_run_waves", "plot_space_time", "plot_spectrum",
+    "plot_mode", "plot_pantograph", "plot_plan", "plot_run_waves", "plot_scatter", "plot_scatter_inputs",
+    "plot_sensitivity", "plot_space_time", "plot_spectrum",
     "plot_static_shape", "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
-    "plot_mode", "plot_plan", "plot_run_waves", "plot_scatter", "plot_scatter_inputs",
-    "plot_sensitivity", "plot_space_time", "plot_spectrum", "plot_static_shape",
-    "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",
     "plot_sweep_uplift", "plot_uplift_comparison", "write_dxf",
 ]  # fmt: skip
