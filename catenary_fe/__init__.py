@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         CatenaryError,
         Conditions,
         ContactWireIrregularity,
+        Distribution,
         Drawn,
         Dropper,
         Effect,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
         Stage,
         SteadyArm,
         StitchWire,
+        Study,
         Support,
         Termination,
         VehicleSuspension,
@@ -61,6 +63,7 @@ if TYPE_CHECKING:
         load_catenary,
         load_conditions,
         load_pantograph,
+        load_study,
         read_measured,
         target_mean_force,
     )
@@ -96,6 +99,7 @@ if TYPE_CHECKING:
     )
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import Session, modal_run, simulate, solve_modes, stepping
+    from catenary_fe.studies.scatter import Scatter, run_scatter
     from catenary_fe.studies.single_wire import run_wire
 
 # loaded on first use: importing the package stays quick
@@ -104,6 +108,7 @@ _ROOMS = {
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
     "engines.exudyn": ("ExudynModel", "exudyn_model"),
+    "studies.scatter": ("Scatter", "run_scatter"),
     "studies.single_wire": ("run_wire",),
     "statics": (
         "Shape",
@@ -149,6 +154,7 @@ _ROOMS = {
         "CatenaryError",
         "Conditions",
         "ContactWireIrregularity",
+        "Distribution",
         "Dropper",
         "Effect",
         "ElasticPantograph",
@@ -170,6 +176,7 @@ _ROOMS = {
         "Stage",
         "SteadyArm",
         "StitchWire",
+        "Study",
         "Support",
         "Termination",
         "VehicleSuspension",
@@ -187,6 +194,7 @@ _ROOMS = {
         "load_catenary",
         "load_conditions",
         "load_pantograph",
+        "load_study",
         "target_mean_force",
     ),
 }
@@ -201,6 +209,7 @@ __all__ = [
     "Conditions",
     "ContactWireIrregularity",
     "Criterion",
+    "Distribution",
     "Drawn",
     "Dropper",
     "Effect",
@@ -229,6 +238,7 @@ __all__ = [
     "ReceptancePantograph",
     "Run",
     "RunInterrupted",
+    "Scatter",
     "SectionEnd",
     "Session",
     "Shape",
@@ -239,6 +249,7 @@ __all__ = [
     "StaticState",
     "SteadyArm",
     "StitchWire",
+    "Study",
     "Support",
     "Termination",
     "TimeSettings",
@@ -269,11 +280,13 @@ __all__ = [
     "load_conditions",
     "load_pantograph",
     "load_run",
+    "load_study",
     "modal_run",
     "pantograph_response",
     "read_line_test",
     "read_measured",
     "receptance_table",
+    "run_scatter",
     "run_wire",
     "save_catenary",
     "settle",

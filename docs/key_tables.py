@@ -15,13 +15,20 @@ from docutils.parsers.rst import Directive
 from catenary_fe.layout.conditions import conditions_schema
 from catenary_fe.layout.files import layout_schema, pantograph_schema
 from catenary_fe.layout.parameters import LARGEST
+from catenary_fe.layout.study import study_schema
 from catenary_fe.results.quantities import FORCE, OF_RUN
 
-SCHEMAS = {"layout": layout_schema, "pantograph": pantograph_schema, "conditions": conditions_schema}
+SCHEMAS = {
+    "layout": layout_schema,
+    "pantograph": pantograph_schema,
+    "conditions": conditions_schema,
+    "study": study_schema,
+}
 EXAMPLES = Path(__file__).parent / "reference" / "examples"
 _UNIT = re.compile(r"\[([^\]]+)\],?\s*")
 _HEADS = "Key", "Unit", "Default", "Allowed", "Meaning", "Example"
 _WIDTHS = 19, 6, 9, 11, 33, 22
+_MANY = {"array": "lists", "integer": "whole numbers", "number": "numbers", "string": "texts"}
 _LONGEST = 50  # characters of an example
 
 
@@ -92,9 +99,8 @@ def _allowed(part: dict[str, Any]) -> Iterator[str]:
     elif part.get("type") in ("number", "integer"):
         yield _bounds(part, "whole number" if part["type"] == "integer" else "number")
     elif part.get("type") == "array":
-        of = part.get("items", {})
-        inner = "tables" if _references(of) else "lists" if of.get("type") == "array" else "whole numbers"
-        yield f"list of {inner}"
+        of = part.get("items") or next(iter(part.get("prefixItems", [])), {})
+        yield f"list of {'tables' if _references(of) else _MANY.get(of.get('type'), 'values')}"
     elif "$ref" in part or part.get("type") == "object":
         yield "table"
     elif part.get("type") in ("string", "boolean"):
@@ -113,7 +119,8 @@ def _bounds(part: dict[str, Any], kind: str) -> str:
 
 
 def _references(part: dict[str, Any]) -> list[str]:
-    inner = [*([part["items"]] if "items" in part else []), *part.get("anyOf", []), *part.get("oneOf", [])]
+    items = [part[name] for name in ("items", "additionalProperties") if isinstance(part.get(name), dict)]
+    inner = [*items, *part.get("anyOf", []), *part.get("oneOf", [])]
     own = [part["$ref"].rpartition("/")[2]] if "$ref" in part else []
     return [*own, *(name for each in inner for name in _references(each))]
 
@@ -146,11 +153,17 @@ def _collect(definitions: dict[str, Any], name: str, place: str, tables: dict[st
     table = tables.setdefault(name, Table(name, schema.get("description", ""), keys=keys_of(schema)))
     table.places += [place] if place and place not in table.places else []
     for key in table.keys:
-        many = "array" in str(schema["properties"][key.name].get("type"))
+        part = schema["properties"][key.name]
+        many = "array" in str(part.get("type"))
         for inner in key.tables:
-            inside = _place(place, key.name, many)
+            inside = f"[{key.name}] …" if _is_by_name(part) else _place(place, key.name, many)
             if not known or inside not in tables[inner].places:
                 _collect(definitions, inner, inside, tables)
+
+
+def _is_by_name(part: dict[str, Any]) -> bool:
+    """Whether a key holds tables by names of the user's own."""
+    return isinstance(part.get("additionalProperties"), dict)
 
 
 def _place(place: str, key: str, many: bool) -> str:
@@ -185,7 +198,7 @@ def _note(definitions: dict[str, Any], name: str, value: Any, found: dict[tuple[
             if len(text) <= _LONGEST:
                 found.setdefault((name, key), f"{key} = {text}")
             for below in _references(part):
-                _note(definitions, below, inner, found)
+                _note(definitions, below, list(inner.values()) if _is_by_name(part) else inner, found)
 
 
 def _toml(value: Any) -> str:

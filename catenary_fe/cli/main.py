@@ -17,6 +17,7 @@ from catenary_fe.cli.layouts import layout
 from catenary_fe.cli.pantograph import pantograph
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
 from catenary_fe.cli.run import run
+from catenary_fe.cli.scatter import scatter
 from catenary_fe.cli.stored import compare, export, film, report, rerun, view, waves
 from catenary_fe.cli.surroundings import leave, prepare
 from catenary_fe.cli.sweep import sweep
@@ -64,6 +65,7 @@ _SHORT_HELP = {
     modes: "Eigenfrequencies and mode shapes.",
     run: "Run pantographs along a layout.",
     sweep: "Runs over speeds, pantographs and values of a layout.",
+    scatter: "Samples of values that scatter, and what matters.",
     report: "One HTML page of a run, to read and hand on.",
     compare: "Runs side by side, or a run beside a line test.",
     film: "Film of a run, as GIF or MP4.",
@@ -74,7 +76,7 @@ _SHORT_HELP = {
     paper: "The figures of the paper, computed and drawn.",
     validate: "Computed beside reference values.",
     selfcheck: "Whether this installation computes what it should.",
-    schema: "JSON Schema of layout, pantograph and conditions files.",
+    schema: "JSON Schema of layout, pantograph, conditions and study files.",
     completion: "Completion script for the shell.",
 }
 for command, text in _SHORT_HELP.items():

@@ -15,12 +15,11 @@ from catenary_fe.cli.terminal import Answer
 from catenary_fe.layout import (
     Catenary,
     Conditions,
-    InputError,
     PowerSystem,
-    counted,
     load_catenary,
     load_conditions,
 )
+from catenary_fe.layout.conditions import one_of_a_run
 from catenary_fe.layout.files import MOST_SPANS
 from catenary_fe.results.signal import FilterKind
 
@@ -85,13 +84,7 @@ def conditions(what: str, **others: Any) -> Decorator:
 
 def read_conditions(path: str) -> Conditions:
     """The circumstances of one run. Raises InputError for a file with several cases."""
-    given = load_conditions(path)
-    if given.case:
-        raise InputError(
-            f"{path}: has {counted(len(given.case), 'case')} beside its own circumstances, and a run takes"
-            " one; leave out [[case]], or give the command cases"
-        )
-    return given
+    return one_of_a_run(load_conditions(path), path)
 
 
 planar = flag("--planar", "Take the layout's equivalent in the vertical plane.")

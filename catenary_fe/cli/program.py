@@ -99,12 +99,17 @@ def selfcheck(as_json: bool, quiet: bool) -> int:
 
 
 @click.command(epilog="\b\nExample:\n  catenary-fe schema layout > layout.schema.json")
-@click.argument("kind", type=click.Choice(["layout", "pantograph", "conditions"]))
+@click.argument("kind", type=click.Choice(["layout", "pantograph", "conditions", "study"]))
 def schema(kind: str) -> None:
     """Print the JSON Schema with which an editor completes and checks files of this kind."""
-    from catenary_fe.layout import conditions_schema, layout_schema, pantograph_schema
+    from catenary_fe.layout import conditions_schema, layout_schema, pantograph_schema, study_schema
 
-    made = {"layout": layout_schema, "pantograph": pantograph_schema, "conditions": conditions_schema}
+    made = {
+        "layout": layout_schema,
+        "pantograph": pantograph_schema,
+        "conditions": conditions_schema,
+        "study": study_schema,
+    }
     print_json(made[kind]())
 
 

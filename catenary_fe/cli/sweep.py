@@ -18,7 +18,7 @@ from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_bar, say
 from catenary_fe.cli.verdicts import Verdict, in_words, remarks, sweep_exit_code, verdict_of, warn_once
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
-from catenary_fe.layout.variation import PANTOGRAPH, Variable, unit_of, varied_pantograph
+from catenary_fe.layout.variation import CONDITIONS, PANTOGRAPH, Variable, kind_of, unit_of, varied_pantograph
 from catenary_fe.results.quantities import DROPPER_FORCE, FORCE, SLACK_DROPPERS, UPLIFT
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ Examples:
 \b
 --speed-kmh takes speeds, or first:last:step. --vary takes PLACE=first:last:count or PLACE=a,b,c; a place
 is written as in the layout file with dots between tables, numbers (from 1) or * for members of a list;
-values of the pantograph start with 'pantograph.'. All combinations are run.
+values of the pantograph start with 'pantograph.', those of the conditions with 'conditions.', whether there
+is a file of them or not. All combinations are run.
 A sweep that was stopped goes on when it is started again with the same folder."""
 
 _MOST = 100_000
@@ -58,6 +59,8 @@ _FIGURES = (
     help="Positions in m at the start: each case runs one pantograph at each.",
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
+@options.conditions("Wind, ice and temperature that the line is under.")
+@options.flag("--keep-force", "Write the contact force along the evaluated spans, too: force.csv.")
 @options.method("linearised", "nonlinear", "exudyn")
 @options.time_step
 @options.element
@@ -73,6 +76,8 @@ def sweep(  # long: an argument an option
     names: tuple[str, ...],
     positions: tuple[float, ...],
     variations: tuple[str, ...],
+    conditions: str | None,
+    keep_force: bool,
     method: Any,
     time_step_ms: float,
     element_m: float | None,
@@ -100,9 +105,10 @@ def sweep(  # long: an argument an option
         method=method,
         mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
         time=TimeSettings(step=time_step_ms / 1e3),
+        keep_force=keep_force,
     )
-    cases = _cases(layout, axes, positions, spans)
-    with progress_bar(counted(count, "case"), not answer.quiet) as progress, _kept(output):
+    cases = _cases(Variable(layout, conditions), axes, positions, spans)
+    with progress_bar(counted(count, "case"), not answer.quiet) as progress, kept(output):
         records = run_sweep(
             cases,
             settings,
@@ -114,7 +120,7 @@ def sweep(  # long: an argument an option
         )
     verdicts = [verdict_of(record, case, system) for record, case in zip(records, cases, strict=True)]
     rows = [row for both in zip(records, verdicts, strict=True) for row in _rows(*both, system)]
-    _write(output, rows, axes, verdicts)
+    _write(output, rows, axes, verdicts, records if keep_force else [])
     if answer.as_json:
         print_json(rows)
     elif not answer.quiet:
@@ -153,8 +159,8 @@ def _say_lengths(cases: Sequence[SweepCase | BrokenCase]) -> None:
 
 
 @contextmanager
-def _kept(output: str) -> Iterator[None]:
-    """Say what a stopped sweep leaves behind."""
+def kept(output: str) -> Iterator[None]:
+    """Say what a stopped sweep or study leaves behind."""
     try:
         yield
     except KeyboardInterrupt:
@@ -189,51 +195,59 @@ def _variation(text: str) -> tuple[str, list[Any]]:
 
 
 def _value(text: str) -> Any:
-    """A number, true, false, or a text."""
+    """A number, true, false, or a text. Whole numbers stay so: a seed is none otherwise."""
     if text in ("true", "false"):
         return text == "true"
     try:
-        return float(text)
+        return int(text) if text.strip().lstrip("+-").isdecimal() else float(text)
     except ValueError:
         return text
 
 
 def _number(text: str, option: str, whole: str) -> float:
     value = _value(text)
-    if not (isinstance(value, float) and np.isfinite(value)):
+    if isinstance(value, bool | str) or not np.isfinite(value):
         raise click.BadParameter(f"{option} {whole}: {text!r} is not a number")
-    return value
+    return float(value)
 
 
 def _cases(
-    layout: str, axes: dict[str, list[Any]], positions: tuple[float, ...], spans: list[int] | None
+    variable: Variable, axes: dict[str, list[Any]], positions: tuple[float, ...], spans: list[int] | None
 ) -> list[SweepCase | BrokenCase]:
     """All combinations. Raises the first one's InputError if none of them can be run."""
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
-
-    variable = Variable(layout)
 
     @cache
     def catenary(varied: tuple[tuple[str, Any], ...]) -> Catenary:
         made = variable.catenary(dict(varied))
         return made.replace(evaluated_spans=tuple(spans)) if spans else made
 
+    weather = cache(lambda varied: variable.conditions(dict(varied)))
     pantograph = cache(lambda name, varied: varied_pantograph(name, dict(varied)))
     cases: list[SweepCase | BrokenCase] = []
+    own = ("speed_kmh", "pantograph")
     for combination in itertools.product(*axes.values()):
         values = dict(zip(axes, combination, strict=True))
-        varied = [item for item in values.items() if item[0] not in ("speed_kmh", "pantograph")]
+        of_line, of_head, of_day = (
+            tuple(item for item in values.items() if item[0] not in own and kind_of(item[0]) == kind)
+            for kind in ("", PANTOGRAPH, CONDITIONS)
+        )
         try:
-            line = catenary(tuple(item for item in varied if not item[0].startswith(PANTOGRAPH)))
-            of_head = tuple(item for item in varied if item[0].startswith(PANTOGRAPH))
+            line, day = catenary(of_line), weather(of_day)
             head = pantograph(values["pantograph"], of_head)
         except InputError as error:
             cases.append(BrokenCase(values=values, error=error))
             continue
         heads, speed = (head,) * max(1, len(positions)), values["speed_kmh"] / 3.6
-        cases.append(
-            SweepCase(values=values, catenary=line, pantographs=heads, speed=speed, positions=positions)
+        case = SweepCase(
+            values=values,
+            catenary=line,
+            pantographs=heads,
+            speed=speed,
+            positions=positions,
+            conditions=day,
         )
+        cases.append(case)
     faults = [case.error for case in cases if isinstance(case, BrokenCase)]
     if len(faults) == len(cases):
         raise faults[0]
@@ -262,9 +276,24 @@ def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[
     ]
 
 
+def force_rows(records: Sequence[Record]) -> Iterator[dict[str, Any]]:
+    """Rows of a table: the force that records keep, case by case, pantograph by pantograph."""
+    for record in records:
+        force = record.get("force", {"x": [], "values": []})
+        for number, values in enumerate(force["values"], start=1):
+            for x, newton in zip(force["x"], values, strict=True):
+                place = {"number": number, "position_m": x, "contact_force_0_20_Hz_N": newton}
+                yield record["values"] | place
+
+
 def _write(
-    output: str, rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]], verdicts: Sequence[Verdict]
+    output: str,
+    rows: Sequence[dict[str, Any]],
+    axes: dict[str, list[Any]],
+    verdicts: Sequence[Verdict],
+    with_force: Sequence[Record],
 ) -> None:
+    """Table and pictures, and the force along the line of the records that have it."""
     from catenary_fe import views
 
     columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
@@ -275,6 +304,10 @@ def _write(
             folder.table("remarks.csv", said)
         else:
             folder.forget("remarks.csv")  # of an earlier state of the sweep
+        if forces := [_with_units(row) for row in force_rows(with_force)]:
+            folder.table("force.csv", forces)
+        else:
+            folder.forget("force.csv")
         x, by = _axis(axes)
         good = [row for row in rows if not row["error"]]
         if good and x:
@@ -291,7 +324,7 @@ def _with_units(row: dict[str, Any]) -> dict[str, Any]:
 def _axis(axes: dict[str, list[Any]]) -> tuple[str | None, list[str]]:
     """What goes along the horizontal axis, and what tells the curves apart."""
     varied = [name for name, values in axes.items() if len(values) > 1]
-    numeric = [name for name in varied if all(isinstance(v, float) for v in axes[name])]
+    numeric = [name for name in varied if not any(isinstance(v, bool | str) for v in axes[name])]
     x = numeric[0] if numeric else None
     return x, [name for name in varied if name != x]
 

@@ -13,7 +13,6 @@ import click
 from catenary_fe.cli.folder import folder_of, read_record
 from catenary_fe.cli.terminal import progress_bar, say
 from catenary_fe.layout import PowerSystem
-from catenary_fe.results.quantities import LATERAL, UPLIFT
 from catenary_fe.results.signal import FilterKind
 
 if TYPE_CHECKING:
@@ -105,22 +104,15 @@ class Verdict:
 
 def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:
     """The verdict on a case, by what is kept of its run."""
-    from catenary_fe.results import ForceStatistics, KeyFigures, excess, governing, judge
+    from catenary_fe.results import excess, governing, judge
     from catenary_fe.results.check import FAILED
     from catenary_fe.studies.sweep import BrokenCase
+    from catenary_fe.studies.sweep_figures import key_figures_of
 
     if isinstance(case, BrokenCase) or "error" in record:
         return Verdict(record["values"], error=record["error"])
     summary = record["summary"]
-    statistics = [ForceStatistics.from_dict(each, summary["filter"]) for each in summary["pantographs"]]
-    figures = KeyFigures(
-        speed=case.speed,
-        catenary=case.catenary,
-        pantographs=case.pantographs,
-        statistics=statistics,
-        lateral=[None if y is None else LATERAL.si(y) for y in summary.get("contact_lateral_mm", [])],
-        uplift={int(n): UPLIFT.si(lift) for n, lift in summary["support_uplift_mm"].items()},
-    )
+    figures = key_figures_of(record, case)
     criteria = judge(figures, system) if system else []
     failed = [text.removeprefix(FAILED) for text in summary["warnings"] if text.startswith(FAILED)]
     return Verdict(
@@ -128,7 +120,7 @@ def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem
         criteria,
         dict(zip(summary["checks_failed"], failed, strict=True)),
         [text for text in summary["warnings"] if not text.startswith(FAILED)],
-        governing(statistics, excess(criteria)),
+        governing(figures.statistics, excess(criteria)),
     )
 
 

@@ -18,6 +18,7 @@ from catenary_fe.layout.conditions import (
     load_conditions,
 )
 from catenary_fe.layout.current_collection import PowerSystem, target_mean_force
+from catenary_fe.layout.distributions import Distribution
 from catenary_fe.layout.equipment import Equipment
 from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted, SolverError, counted
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
@@ -49,6 +50,7 @@ from catenary_fe.layout.parts import (
 from catenary_fe.layout.pushed import AerodynamicForce, Panhead, Stage
 from catenary_fe.layout.receptance import ReceptancePantograph
 from catenary_fe.layout.rules import layout_warnings
+from catenary_fe.layout.study import Study, load_study, study_schema
 from catenary_fe.layout.terminations import ends_in_words
 from catenary_fe.layout.writer import layout_text
 
@@ -64,6 +66,7 @@ __all__ = [
     "Conditions",
     "ContactWireIrregularity",
     "DescribedPantograph",
+    "Distribution",
     "Drawn",
     "Dropper",
     "Effect",
@@ -88,6 +91,7 @@ __all__ = [
     "Stage",
     "SteadyArm",
     "StitchWire",
+    "Study",
     "Support",
     "Termination",
     "VehicleSuspension",
@@ -109,9 +113,11 @@ __all__ = [
     "load_catenary",
     "load_conditions",
     "load_pantograph",
+    "load_study",
     "pantograph_schema",
     "read_catenary",
     "read_measured",
     "recorded_pantograph",
+    "study_schema",
     "target_mean_force",
 ]

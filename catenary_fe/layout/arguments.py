@@ -144,6 +144,7 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "LineTest": ("a line test", "read_line_test reads files, LineTest(passes=[...]) makes one"),
     "LineTestComparison": ("a comparison with a line test", "compare_with_line_test makes one"),
     "PantographResponse": ("the response of a pantograph", "pantograph_response(pantograph) gives it"),
+    "Study": ("a Study", "load_study reads a file"),
     "Modes": ("modes of a line", "give solve_modes(shape)"),
     "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
     "TimeSettings": ("TimeSettings", "give TimeSettings(step=...), or leave it out"),

@@ -1,52 +1,82 @@
-"""Change single values of a layout or pantograph by their place, such as ``support.steady_arm.mass``."""
+"""Change single values of layout, pantograph, conditions by their place: ``support.steady_arm.mass``."""
 
 from __future__ import annotations
 
 import copy
 import difflib
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from catenary_fe.layout.catenary import Catenary
+from catenary_fe.layout.conditions import Conditions, conditions_record, load_conditions, one_of_a_run
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph
 from catenary_fe.layout.pantograph import DescribedPantograph
-from catenary_fe.layout.parameters import problem_lines
+from catenary_fe.layout.parameters import problem_lines, shorten
 from catenary_fe.layout.toml import read_toml
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
+CONDITIONS = "conditions."  # and those of the conditions with this
+
+
+def kind_of(place: str) -> str:
+    """What a place is of: ``PANTOGRAPH``, ``CONDITIONS``, or "", the layout."""
+    return next((kind for kind in (PANTOGRAPH, CONDITIONS) if place.startswith(kind)), "")
 
 
 class Variable:
-    """A layout file and a pantograph whose values can be replaced by their place.
+    """A layout file and perhaps one of conditions, whose values can be replaced by their place.
 
     A place is written with dots; members of a list by their number from 1, or ``*`` for all:
-    ``contact_wire.tension``, ``span.*.pre_sag``, ``pantograph.stages.1.mass``.
+    ``contact_wire.tension``, ``span.*.pre_sag``, ``pantograph.stages.1.mass``, ``conditions.wind.speed``.
 
-    Raises InputError where a file is missing or faulty.
+    conditions : their file; unset: none, and places say all that there is of them
+
+    Raises InputError where a file is missing or faulty, and for conditions with cases.
     """
 
-    def __init__(self, layout: str | Path) -> None:
-        self._path = Path(layout)
-        self._record = read_toml(self._path, "layout")
+    def __init__(self, layout: str | Path, conditions: str | Path | None = None) -> None:
+        self.path = Path(layout)
+        self.record = read_toml(self.path, "layout")
+        self._has_conditions, self._conditions_path = conditions is not None, str(conditions or "conditions")
+        self.conditions_record: dict[str, Any] = {}
+        if conditions is not None:
+            self.conditions_record = conditions_record(conditions)
+            one_of_a_run(load_conditions(conditions), conditions)
 
     def catenary(self, values: dict[str, Any]) -> Catenary:
-        """The catenary with these values; keys of the pantograph are left out.
+        """The catenary with these values; keys of pantograph and conditions are left out.
 
         Raises InputError for a place that does not exist and for values that break a rule.
         """
-        record = copy.deepcopy(self._record)
-        changes = {place: v for place, v in values.items() if not place.startswith(PANTOGRAPH)}
-        said = _changed(record, str(self._path), changes)
+        record = copy.deepcopy(self.record)
+        changes = {place: v for place, v in values.items() if not kind_of(place)}
+        said = _changed(record, str(self.path), changes, LayoutFile)
         try:
             return LayoutFile.model_validate(record).catenary()
         except ValidationError as error:
             raise InputError(*(f"{said}: {line}" for line in fault_lines(error, record))) from None
         except InputError as error:
             raise InputError(*(f"{said}: {line}" for line in error.problems)) from None
+
+    def conditions(self, values: dict[str, Any]) -> Conditions | None:
+        """The conditions with these values, None without any; keys of layout and pantograph are left out.
+
+        Raises InputError for a place that does not exist and for values that break a rule.
+        """
+        changes = _of(CONDITIONS, values)
+        if not (self._has_conditions or changes):
+            return None
+        record = copy.deepcopy(self.conditions_record)
+        said = _changed(record, self._conditions_path, changes, Conditions)
+        try:
+            return Conditions.model_validate(record)
+        except ValidationError as error:
+            raise InputError(*problem_lines(error, Conditions, where=said)) from None
 
 
 def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> DescribedPantograph:
@@ -55,24 +85,41 @@ def varied_pantograph(name_or_path: str, values: dict[str, Any]) -> DescribedPan
     Raises InputError for a place that does not exist and for values that break a rule.
     """
     pantograph = load_pantograph(name_or_path)
-    changes = {
-        place.removeprefix(PANTOGRAPH): v for place, v in values.items() if place.startswith(PANTOGRAPH)
-    }
+    changes = _of(PANTOGRAPH, values)
     if not changes:
         return pantograph
     record = pantograph.model_dump(mode="json")
-    said = _changed(record, name_or_path, changes)
+    said = _changed(record, name_or_path, changes, type(pantograph))
     try:
         return type(pantograph).model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, type(pantograph), where=said)) from None
 
 
-def _changed(record: dict[str, Any], name: str, changes: dict[str, Any]) -> str:
+def _of(prefix: str, values: dict[str, Any]) -> dict[str, Any]:
+    """Those values whose place starts so, by the rest of it."""
+    return {place.removeprefix(prefix): v for place, v in values.items() if place.startswith(prefix)}
+
+
+def _changed(record: dict[str, Any], name: str, changes: dict[str, Any], model: type[BaseModel]) -> str:
     """Put values in their places; returns name and changes in words."""
     for place, value in changes.items():
+        _make_tables(record, place, model)
         replace_at(record, place, value)
-    return ", ".join([name, *(f"{place} = {value!r}" for place, value in changes.items())])
+    return ", ".join([name, *(f"{place} = {shorten(value)}" for place, value in changes.items())])
+
+
+def _make_tables(record: dict[str, Any], place: str, model: type[BaseModel]) -> None:
+    """The tables on the way to a key, where a file may leave them out. Raises InputError for unknown ones."""
+    for step in place.split(".")[:-1]:
+        field = model.model_fields.get(step)
+        if field is None:
+            raise InputError(f"{place}: no '{step}' to vary a value of; {_near(step, model.model_fields)}")
+        kinds = (field.annotation, *get_args(field.annotation)) if field else ()
+        inner = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), None)
+        if inner is None or not isinstance(record.setdefault(step, {}), dict):
+            return
+        record, model = record[step], inner
 
 
 def replace_at(record: dict[str, Any], place: str, value: Any) -> None:
@@ -95,6 +142,34 @@ def replace_at(record: dict[str, Any], place: str, value: Any) -> None:
             holder[key] = value
 
 
+def places_of(record: dict[str, Any], place: str, model: type[BaseModel]) -> list[str]:
+    """Places of single members that a place stands for, ``*`` written out.
+
+    Raises InputError for a place that does not exist.
+    """
+    trial = copy.deepcopy(record)
+    _make_tables(trial, place, model)
+    replace_at(trial, place, None)
+    steps = place.split(".")
+    found: list[tuple[list[str], Any]] = [([], record)]
+    for n, step in enumerate(steps):
+        inside: list[tuple[list[str], Any]] = []
+        for path, holder in found:
+            if isinstance(holder, dict) or (holder is None and step != "*"):
+                inside.append(([*path, step], (holder or {}).get(step)))
+            else:
+                keys = _keys(holder, step, place, steps[:n])
+                inside += [([*path, str(key + 1)], holder[key]) for key in keys]
+        found = inside
+    return [".".join(path) for path, _ in found]
+
+
+def _near(step: str, known: Iterable[str]) -> str:
+    """The nearest of the known keys, or all of them."""
+    near = difflib.get_close_matches(step, list(known), n=1)
+    return f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
+
+
 def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False) -> list[Any]:
     """What a step of a place means inside a table or a list.
 
@@ -103,9 +178,7 @@ def _keys(holder: Any, step: str, place: str, path: list[str], new: bool = False
     """
     if isinstance(holder, dict):
         if step not in holder and not new:
-            near = difflib.get_close_matches(step, holder, n=1)
-            hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(holder)}"
-            raise InputError(f"{place}: no '{step}' to vary a value of; {hint}")
+            raise InputError(f"{place}: no '{step}' to vary a value of; {_near(step, holder)}")
         return [step]
     before = ".".join(path)
     if not isinstance(holder, list):
@@ -127,6 +200,8 @@ def unit_of(place: str) -> str:
     models: list[type[BaseModel]] = [LayoutFile]
     if place.startswith(PANTOGRAPH):
         models, place = list(get_args(DescribedPantograph)), place.removeprefix(PANTOGRAPH)
+    elif place.startswith(CONDITIONS):
+        models, place = [Conditions], place.removeprefix(CONDITIONS)
     return next((unit for model in models if (unit := _unit_in(model, place))), "")
 
 

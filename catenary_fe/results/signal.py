@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
@@ -41,22 +42,30 @@ def high_pass(signal: Floats, step: float, cut_off: float, kind: FilterKind = "c
 
 
 def _filter(signal: Floats, step: float, cut_off: float, band: str, kind: FilterKind) -> Floats:
-    from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt
+    from scipy.signal import sosfilt, sosfiltfilt
 
     one_of("filter", kind, get_args(FilterKind))
     if not 0 < cut_off < 0.5 / step:
         raise ValueError(
             f"cut-off = {cut_off:g} Hz: must lie below half of the {1 / step:g} samples a second"
         )
-    sections = butter(ORDER, cut_off, btype=band, fs=1 / step, output="sos")
+    sections, settled = _designed(cut_off, band, step)
     if kind == "zero-phase":
         filtered: Floats = sosfiltfilt(sections, signal, axis=-1)
         return filtered
     # start as if the first value had lasted forever: no step at the start
-    state = sosfilt_zi(sections)
-    state = state.reshape(state.shape[0], *(1,) * (signal.ndim - 1), 2) * signal[..., :1]
+    state = settled.reshape(settled.shape[0], *(1,) * (signal.ndim - 1), 2) * signal[..., :1]
     filtered, _ = sosfilt(sections, signal, axis=-1, zi=state)
     return filtered
+
+
+@lru_cache(maxsize=64)
+def _designed(cut_off: float, band: str, step: float) -> tuple[Floats, Floats]:
+    """Sections of the filter, and their state after a 1 that has lasted forever."""
+    from scipy.signal import butter, sosfilt_zi
+
+    sections: Floats = butter(ORDER, cut_off, btype=band, fs=1 / step, output="sos")
+    return sections, sosfilt_zi(sections)
 
 
 def spectrum(signal: Floats, step: float) -> tuple[Floats, Floats]:

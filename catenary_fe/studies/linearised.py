@@ -15,10 +15,11 @@ from catenary_fe.engines.linearised.doubts import slack_doubts, tension_doubts
 from catenary_fe.engines.linearised.run import Extremes, LinearisedEngine
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.reduction import linear_model
-from catenary_fe.layout import AnyPantograph, CatenaryError, SolverError
+from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, SolverError
 from catenary_fe.layout.current_collection import MEAN_FORCE_TOLERANCE
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape
+from catenary_fe.statics.cases import pushed_arms
 from catenary_fe.studies.record import make_run
 
 Floats = NDArray[np.float64]
@@ -124,19 +125,34 @@ NEAR = 0.3  # [N] from a mean force, where the slope of a single run, to 10 %, i
 
 
 class LinearisedLine:
-    """A line in static equilibrium, linearised, for any number of runs with one time step."""
+    """A line in static equilibrium, linearised, for any number of runs with one time step.
+
+    Raises InputError where the wind pushes a steady arm.
+    """
 
     def __init__(
         self, shape: Shape, time: TimeSettings | None = None, store_wire: float | None = None
     ) -> None:
+        if pushed := pushed_arms(shape):
+            raise InputError(
+                f"conditions: at support {pushed[0]} the wind pushes the steady arm, which has no tangent to"
+                " linearise about; take the method nonlinear, less wind, or more stagger"
+            )
         self.shape, self.time = shape, time or TimeSettings()
         model = linear_model(shape.system)
         self.engine = LinearisedEngine(shape.system, model, self.time, store_wire)
 
-    def run(self, cases: Sequence[RunCase], progress: Progress | None = None) -> list[Run | CatenaryError]:
+    def run(
+        self,
+        cases: Sequence[RunCase],
+        progress: Progress | None = None,
+        *,
+        part_of: int | None = None,
+    ) -> list[Run | CatenaryError]:
         """Run all cases; where one fails, its error stands in its place.
 
         progress : called with the share done, 0 to 1
+        part_of : number of cases that these are some of, see :meth:`LinearisedEngine.run`
         """
         tasks: list[_Task] = []
         results: list[Run | CatenaryError | _Task] = []
@@ -146,7 +162,7 @@ class LinearisedLine:
                 results.append(tasks[-1])
             except CatenaryError as error:
                 results.append(error)
-        self.engine.run(tasks, progress)
+        self.engine.run(tasks, progress, part_of=part_of)
         found = [result.result if isinstance(result, _Task) else result for result in results]
         return [result for result in found if result is not None]
 

@@ -23,7 +23,6 @@ from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
-from catenary_fe.statics.cases import pushed_arms
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine, MeanForce, aimed, share_of
 from catenary_fe.studies.record import kept_when_stopped, make_run, run_key
@@ -115,11 +114,6 @@ def simulate(  # long by what it documents
     _check_memory(shape, case, time, store_wire, method)
     for warning in warnings:
         _log.warning(warning)
-    if method == "linearised" and pushed_arms(shape):
-        raise InputError(
-            f"conditions: at support {pushed_arms(shape)[0]} the wind pushes the steady arm, which has no"
-            " tangent to linearise about; take the method nonlinear, less wind, or more stagger"
-        )
     if method == "linearised":
         (result,) = LinearisedLine(shape, time, store_wire).run([case], progress)
         if isinstance(result, CatenaryError):

@@ -6,12 +6,9 @@ import hashlib
 import json
 import logging
 import os
-import signal
-import threading
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -24,15 +21,17 @@ from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.joining import mesh_of
 from catenary_fe.fe.mesh import MeshSettings
-from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, InputError, SolverError
+from catenary_fe.layout import AnyPantograph, Catenary, CatenaryError, Conditions, SolverError
 from catenary_fe.layout.arguments import whole
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
-from catenary_fe.statics import Shape, find_form
+from catenary_fe.statics import Shape, find_form, settle
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
+from catenary_fe.studies.processes import deadly, manager_may_stumble, processes_of
 from catenary_fe.studies.resources import Demand, check_memory, demand, workers_that_fit
 from catenary_fe.studies.simulate import Method, simulate
+from catenary_fe.studies.sweep_figures import force_along
 from catenary_fe.studies.sweep_store import Record, Store, open_store
 
 Progress = Callable[[int, int], None]
@@ -43,12 +42,16 @@ RESULTS = 3  # rises when the same inputs give other results: cases that were ke
 
 @dataclass(frozen=True, kw_only=True)
 class SweepSettings:
-    """What all cases of a sweep have in common."""
+    """What all cases of a sweep have in common.
+
+    keep_force : records have the filtered contact force along the evaluated spans, too, as ``force``
+    """
 
     method: Method = "linearised"
     mesh: MeshSettings = field(default_factory=MeshSettings)
     time: TimeSettings = field(default_factory=TimeSettings)
     filter: FilterKind = "causal"
+    keep_force: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +60,8 @@ class SweepCase:
 
     values : what tells it from the others, by column of the table
     positions : [m] of the pantographs at the start, empty for one near the first support
+    conditions : that the line is under, without further cases
+    part_of : cases that the sweep has of this line, which it sets itself; see :meth:`LinearisedEngine.run`
     """
 
     values: dict[str, Any]
@@ -64,6 +69,8 @@ class SweepCase:
     pantographs: tuple[AnyPantograph, ...]
     speed: float
     positions: tuple[float, ...] = ()
+    conditions: Conditions | None = None
+    part_of: int | None = None
 
     def key(self, settings: SweepSettings) -> str:
         """A name that is the same only for the same inputs."""
@@ -74,6 +81,7 @@ class SweepCase:
             json.dumps(asdict(settings), sort_keys=True),
             version("catenary_fe"),
             str(RESULTS),
+            *([self.conditions.model_dump_json()] if self.conditions else []),
         ]
         return hashlib.sha256("\n".join(inputs).encode()).hexdigest()[:20]
 
@@ -121,7 +129,9 @@ def run_sweep(
         done = len(cases) - len(missing)
         if done:
             _log.info("%d of %d cases are there already", done, len(cases))
-        to_run = {i: case for i in missing if isinstance(case := cases[i], SweepCase)}
+        whole_lines = {i: case for i, case in enumerate(cases) if isinstance(case, SweepCase)}
+        sizes = {i: len(group) for group in _by_line(whole_lines) for i in group}
+        to_run = {i: replace(whole_lines[i], part_of=sizes[i]) for i in missing}
         workers = (os.cpu_count() or 1) if jobs == -1 else whole("jobs", jobs, least=1)
         if to_run and not scheduler:
             needs = _largest_demand(list(to_run.values()), settings)
@@ -160,15 +170,19 @@ def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Dema
     return demand(longest.catenary, mesh, most.pantographs, steps, 0, settings.method, slots)
 
 
+def _by_line(cases: Mapping[int, SweepCase]) -> list[list[int]]:
+    groups: dict[tuple[Catenary, Conditions | None], list[int]] = {}
+    for i, case in cases.items():
+        groups.setdefault((case.catenary, case.conditions), []).append(i)
+    return list(groups.values())
+
+
 def _tasks(cases: Mapping[int, SweepCase], settings: SweepSettings, workers: int) -> list[list[int]]:
-    """Numbers of cases to run together: of one catenary, of similar length, no more than fill the slots."""
+    """Numbers of cases to run together: of one line, of similar length, no more than fill the slots."""
     if settings.method != "linearised":
         return [[i] for i in cases]
-    groups: dict[Catenary, list[int]] = {}
-    for i, case in cases.items():
-        groups.setdefault(case.catenary, []).append(i)
-    tasks = []
-    for group in groups.values():
+    groups, tasks = _by_line(cases), []
+    for group in groups:
         group.sort(key=lambda i: cases[i].speed)
         parts = max(int(np.ceil(len(group) / SLOTS)), min(workers // len(groups), len(group)))
         tasks += [part.tolist() for part in np.array_split(group, parts)]
@@ -196,7 +210,7 @@ def _spread(
             for numbers, found in _in_parallel(batch, cases, settings, processes, scheduler):
                 left.remove(numbers)
                 yield numbers, found
-        except _deadly(scheduler):
+        except deadly(scheduler):
             deaths += 1
             _log.warning("a worker process died; what it was at is tried again")
             if not alone:
@@ -216,7 +230,7 @@ def _in_parallel(
 ) -> Iterator[tuple[list[int], list[Record]]]:
     from joblib import Parallel, delayed
 
-    with _engine(scheduler), _manager_may_stumble():
+    with processes_of(scheduler), manager_may_stumble():
         parallel = Parallel(
             n_jobs=-1 if scheduler else processes,
             return_as="generator_unordered",
@@ -224,43 +238,6 @@ def _in_parallel(
             pre_dispatch="all",
         )
         yield from parallel(delayed(_run_task)(task, [cases[i] for i in task], settings) for task in tasks)
-
-
-def _leave_interrupts() -> None:
-    """Ctrl-C goes to all processes of a terminal: the one that started the others ends them."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def _manager_may_stumble() -> Iterator[None]:
-    """Say nothing where work that is taken away at an interruption trips up the thread that hands it out.
-
-    Nor that it is taken away.
-    """
-    usual = threading.excepthook
-
-    def hook(caught: threading.ExceptHookArgs) -> None:
-        if not (type(caught.thread).__name__ == "_ExecutorManagerThread" and caught.exc_type is KeyError):
-            usual(caught)
-
-    threading.excepthook = hook
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
-            yield
-    finally:
-        threading.excepthook = usual
-
-
-def _deadly(scheduler: str | None) -> tuple[type[Exception], ...]:
-    """What is raised where a worker process dies."""
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    if scheduler is None:
-        return (TerminatedWorkerError,)
-    from dask.distributed import KilledWorker
-
-    return TerminatedWorkerError, KilledWorker
 
 
 def _lost() -> Record:
@@ -271,33 +248,10 @@ def _lost() -> Record:
     return _failed(error) | {LOST: True}
 
 
-@contextmanager
-def _engine(scheduler: str | None) -> Iterator[None]:
-    import joblib
-
-    if scheduler is None:
-        with joblib.parallel_config("loky", initializer=_leave_interrupts):
-            yield
-        return
-
-    try:
-        from dask.distributed import Client
-    except ImportError:
-        raise InputError(
-            f"scheduler {scheduler}: Dask is not installed here; install catenary_fe with the extra 'cluster'"
-        ) from None
-    try:
-        client = Client(scheduler, timeout=5)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError, TimeoutError) as error:
-        raise InputError(f"scheduler {scheduler}: no Dask cluster answers there ({error})") from None
-    with client, joblib.parallel_config("dask"):
-        yield
-
-
 def _run_task(
     numbers: list[int], cases: Sequence[SweepCase], settings: SweepSettings
 ) -> tuple[list[int], list[Record]]:
-    """Run cases of one catenary; what fails is recorded, not raised."""
+    """Run cases of one line; what fails is recorded, not raised."""
     try:
         with _without_warnings():
             if settings.method == "linearised":
@@ -323,7 +277,7 @@ def _without_warnings() -> Iterator[None]:
 
 
 def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[Record]:
-    line = _linearised(cases[0].catenary, settings.mesh, settings.time)
+    line = _linearised(cases[0].catenary, settings.mesh, cases[0].conditions, settings.time)
     records: list[Record] = []
     good: list[RunCase] = []
     for case in cases:
@@ -333,13 +287,13 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))
-    results = iter(line.run(good))
+    results = iter(line.run(good, part_of=cases[0].part_of))
     return [record or _record(next(results), settings) for record in records]
 
 
 def _run_alone(case: SweepCase, settings: SweepSettings) -> Record:
     try:
-        shape = _shape(case.catenary, settings.mesh)
+        shape = _settled(case.catenary, settings.mesh, case.conditions)
         run = simulate(
             shape,
             case.pantographs,
@@ -361,7 +315,9 @@ def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
         del summary[key]  # a table is the same whenever and wherever it was computed
     for i, pantograph in enumerate(summary["pantographs"]):
         pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
-    return {"summary": summary}
+    return {"summary": summary} | (
+        {"force": force_along(result, settings.filter)} if settings.keep_force else {}
+    )
 
 
 def _failed(error: CatenaryError) -> Record:
@@ -374,5 +330,13 @@ def _shape(catenary: Catenary, mesh: MeshSettings) -> Shape:
 
 
 @lru_cache(maxsize=2)
-def _linearised(catenary: Catenary, mesh: MeshSettings, time: TimeSettings) -> LinearisedLine:
-    return LinearisedLine(_shape(catenary, mesh), time)
+def _settled(catenary: Catenary, mesh: MeshSettings, conditions: Conditions | None) -> Shape:
+    shape = _shape(catenary, mesh)
+    return settle(shape, conditions) if conditions else shape
+
+
+@lru_cache(maxsize=2)
+def _linearised(
+    catenary: Catenary, mesh: MeshSettings, conditions: Conditions | None, time: TimeSettings
+) -> LinearisedLine:
+    return LinearisedLine(_settled(catenary, mesh, conditions), time)

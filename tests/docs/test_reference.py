@@ -72,7 +72,7 @@ def test_the_whole_interface_is_documented(directives):
     assert {f"catenary_fe.{name}" for name in cf.__all__ if name != "library"} <= shown
 
 
-@pytest.mark.parametrize("kind", ["layout", "pantograph", "conditions"])
+@pytest.mark.parametrize("kind", ["layout", "pantograph", "conditions", "study"])
 def test_every_key_has_unit_meaning_and_example(key_tables, kind):
     schema = key_tables.SCHEMAS[kind]()
     tables, examples = key_tables.tables_of(schema), key_tables.examples_of(kind)
@@ -98,6 +98,8 @@ def test_examples_are_files_that_load(key_tables):
             loaded = cf.load_catenary(path)
         elif path.stem.startswith("conditions"):
             loaded = cf.load_conditions(path)
+        elif path.stem.startswith("study"):
+            loaded = cf.load_study(path)
         else:
             loaded = cf.load_pantograph(path)
         assert loaded.name == record["name"]

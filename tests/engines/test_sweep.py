@@ -7,7 +7,9 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import catenary_fe as cf
@@ -178,3 +180,32 @@ def test_a_cluster_gives_the_same_records(short, pantograph, tmp_path):
     ) as cluster:
         there = run_sweep(cases, SweepSettings(), tmp_path / "there", scheduler=cluster.scheduler_address)
     assert there == here
+
+
+def test_conditions_of_a_sweep_are_those_of_single_runs(short, short_shape, pantograph, tmp_path):
+    ice = cf.Conditions(ice=cf.Ice(load=5.0))
+    (case,) = cases_of(short, pantograph, (240,))
+    cases = [case, replace(case, conditions=ice)]
+    assert cases[0].key(SweepSettings()) != cases[1].key(SweepSettings())
+    records = run_sweep(cases, SweepSettings(keep_force=True), tmp_path, jobs=1)
+    run = cf.simulate(short_shape, [pantograph], speed=240 / 3.6, method="linearised", conditions=ice)
+    still, iced = (r["summary"]["pantographs"][0]["std_N"] for r in records)
+    assert iced == pytest.approx(run.contact_force_statistics()[0].std, rel=1e-6)
+    assert still != pytest.approx(iced, rel=1e-3)
+    force = records[1]["force"]
+    x, filtered = run.data["position"].values[0], run.filtered_contact_force()[0]
+    assert force["values"][0] == pytest.approx(np.interp(force["x"], x, filtered), abs=0.006)
+    assert (force["x"][0], force["x"][-1]) == (120.0, 180.0)
+
+
+def test_the_command_varies_conditions_and_writes_forces(layout, tmp_path):
+    out = tmp_path / "out"
+    code = main(
+        ["sweep", str(layout), "--speed-kmh", "200", "--pantograph", "EN 50318:2002", "--vary",
+         "conditions.temperature=-20,40", "--keep-force", "-o", str(out), "--jobs", "1"]
+    )  # fmt: skip
+    assert code == 0
+    assert [row["conditions.temperature [°C]"] for row in table(out)] == ["-20", "40"]
+    with (out / "force.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 121 and rows[1]["position_m"] == "120.500"

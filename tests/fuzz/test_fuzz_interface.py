@@ -72,6 +72,11 @@ def graded(name):
     return lambda g, bad: cf.graded_nodes(**(values | {name: bad}))
 
 
+def scattered(name):
+    study = cf.Study(layout="no.toml", pantographs=["DSA250"], speed_kmh=[200])
+    return lambda g, bad: cf.run_scatter(study, **({"samples": 2, "folder": "x"} | {name: bad}))
+
+
 def line_test(name):
     return lambda g, bad: cf.compare_with_line_test(g.run, TEST, **{name: bad})
 
@@ -91,6 +96,13 @@ CALLS = {
         (*NUMBERS, "head.csv", [], [[1.0, 1e-3, -90.0]], [[1.0, 1e-3, -90.0]] * 20),
     ),
     "load_conditions": (lambda g, b: cf.load_conditions(b), PATH),
+    "load_study": (lambda g, b: cf.load_study(b), PATH),
+    "run_scatter": (lambda g, b: cf.run_scatter(b, samples=2, folder="x"), OBJECT),
+    "run_scatter: samples": (scattered("samples"), (*WHOLE, 1)),
+    "run_scatter: folder": (scattered("folder"), PATH),
+    "run_scatter: sensitivity": (scattered("sensitivity"), ("x", 1, None, [], ARRAY)),
+    "run_scatter: sampling": (scattered("sampling"), ("x", "", 3, [], THING, ARRAY)),
+    "run_scatter: progress": (scattered("progress"), FUNCTION),
     "settle": (lambda g, b: cf.settle(b, cf.Conditions()), OBJECT),
     "settle: conditions": (lambda g, b: cf.settle(g.shape, b), (*OBJECT[:3], *OBJECT[4:], [3], [None])),
     "case_rows": (lambda g, b: cf.case_rows(b), OBJECT),

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.layout import conditions_schema, layout_schema, pantograph_schema
+from catenary_fe.layout import conditions_schema, layout_schema, pantograph_schema, study_schema
 from catenary_fe.layout.toml import LARGEST_FILE
 from catenary_fe.layout.variation import varied_pantograph
 
@@ -176,7 +176,12 @@ def test_schemas_accept_the_layouts_and_know_the_keys(reference_layout):
     jsonschema.Draft202012Validator.check_schema(schema)
     for path in sorted(reference_layout.parent.glob("*.toml")):
         jsonschema.validate(tomllib.loads(path.read_text()), schema)
-    schemas = {"layout": schema, "pantograph": pantograph_schema(), "conditions": conditions_schema()}
+    schemas = {
+        "layout": schema,
+        "pantograph": pantograph_schema(),
+        "conditions": conditions_schema(),
+        "study": study_schema(),
+    }
     for name, current in schemas.items():
         path = reference_layout.parents[1] / "schemas" / f"{name}.schema.json"
         committed = json.loads(path.read_text())

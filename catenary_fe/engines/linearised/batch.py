@@ -51,6 +51,7 @@ from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+FEW = 3  # runs that take less time one by one than in slots, most of which stay empty (measured)
 BLOCK = 250  # steps between looks at which slots are free
 
 
@@ -248,7 +249,7 @@ _advance_one, _advance_eight = _loops(
 
 
 def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> int:
-    """``SLOTS`` if there are several runs and their histories fit into the memory [bytes], else 1.
+    """``SLOTS`` if there are more than few runs and their histories fit into the memory [bytes], else 1.
 
     Runs that compute some of the sections alone go one by one: side by side they were on all of them.
     """
@@ -257,4 +258,4 @@ def most_slots(setup: Setup, sizes: Sizes, runs: int, memory: float = 1.5e9) -> 
         line.k.size + line.supports.size + 3 * sizes.contacts + sizes.pantographs * sizes.coordinates + 2
     )
     size = 8.0 * SLOTS * (sizes.steps * histories + sizes.shapes * line.heights.size)
-    return SLOTS if runs > 1 and size <= memory and not setup.relays else 1
+    return SLOTS if runs > FEW and size <= memory and not setup.relays else 1

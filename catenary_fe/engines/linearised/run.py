@@ -87,10 +87,14 @@ class LinearisedEngine:
         self.setup: Setup = set_up(model, self._time, system)
         self._every = round(store_wire / self._time.step) if store_wire else 0
 
-    def run(self, tasks: Sequence[Task], progress: Progress | None = None) -> None:
+    def run(
+        self, tasks: Sequence[Task], progress: Progress | None = None, *, part_of: int | None = None
+    ) -> None:
         """Run all tasks.
 
         progress : called with the share done, 0 to 1
+        part_of : number of runs that these are some of: it decides whether they go side by side, which moves
+            the last digits, so that each gives the same bytes in whatever parts they are run
         """
         jobs = [_Job(task, task.case.steps(self._time.step)) for task in tasks]
         waiting = sorted(jobs, key=lambda job: -job.steps)  # long ones first: the slots end together
@@ -99,7 +103,7 @@ class LinearisedEngine:
         sizes = self._sizes(jobs)
         times = self._time.step * np.arange(sizes.steps + 2, dtype=float)
         signals = self._system.signals(times)
-        slots = most_slots(self.setup, sizes, len(jobs))
+        slots = most_slots(self.setup, sizes, part_of or len(jobs))
         batch = Batch(self.setup, sizes, slots, self._every, signals)
         active: dict[int, _Job] = {}
         while waiting or active:

@@ -17,7 +17,7 @@ from catenary_fe.layout.conditions.irregularity import ContactWireIrregularity, 
 from catenary_fe.layout.conditions.measured_wind import MeasuredWindLoads
 from catenary_fe.layout.conditions.temperature import Warming
 from catenary_fe.layout.conditions.wind import Drag, Gusts, Wind
-from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.errors import InputError, counted
 from catenary_fe.layout.parameters import Parameters, Positive, Text, problem_lines
 from catenary_fe.layout.toml import read_toml, toml_value
 
@@ -123,11 +123,16 @@ def load_conditions(path: str | Path) -> Conditions:
 
     Raises InputError, one line for each fault that the files have.
     """
-    record = with_tables(read_toml(Path(path), "conditions"), Path(path).parent)
+    record = conditions_record(path)
     try:
         return Conditions.model_validate(record)
     except ValidationError as error:
         raise InputError(*problem_lines(error, Conditions, where=str(path))) from None
+
+
+def conditions_record(path: str | Path) -> dict[str, Any]:
+    """What a conditions file says, with the CSV tables that it names. Raises InputError for faulty ones."""
+    return with_tables(read_toml(Path(path), "conditions"), Path(path).parent)
 
 
 def conditions_text(path: str | Path) -> bytes:
@@ -137,6 +142,16 @@ def conditions_text(path: str | Path) -> bytes:
         return Path(path).read_bytes()
     whole = with_tables(record, Path(path).parent)
     return "".join(f"{key} = {toml_value(value)}\n" for key, value in whole.items()).encode()
+
+
+def one_of_a_run(given: Conditions, path: str | Path) -> Conditions:
+    """The circumstances of one run. Raises InputError for a file with several cases."""
+    if given.case:
+        raise InputError(
+            f"{path}: has {counted(len(given.case), 'case')} beside its own circumstances, and a run takes"
+            " one; leave out [[case]], or give the command cases"
+        )
+    return given
 
 
 def conditions_schema() -> dict[str, Any]:
@@ -155,8 +170,10 @@ __all__ = [
     "VehicleSuspension",
     "Wind",
     "WirePart",
+    "conditions_record",
     "conditions_schema",
     "conditions_text",
     "load_conditions",
+    "one_of_a_run",
     "over_x",
 ]
