@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import InputError
 from catenary_fe.layout.conditions import conditions_text
+from catenary_fe.layout.files import layout_bytes
 from catenary_fe.layout.receptance import receptance_table_of
 from catenary_fe.layout.toml import read_toml
 from catenary_fe.results.export import write_csv
@@ -227,7 +228,7 @@ class InputFiles:
             )
         found = [_pantograph_file(number, name) for number, name in enumerate(pantographs, start=1)]
         return cls(
-            Path(layout).read_bytes(),
+            layout_bytes(layout),
             tuple(file for file, _ in found),
             tuple(table for _, table in found),
             conditions_text(conditions) if conditions else None,

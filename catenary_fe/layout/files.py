@@ -13,6 +13,7 @@ from catenary_fe.layout import library
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.as_built import AsBuilt
 from catenary_fe.layout.catenary import Catenary, RayleighDamping
+from catenary_fe.layout.conditions.from_files import with_tables_as_built
 from catenary_fe.layout.entries import (
     DropperDefaults,
     SpanEntry,
@@ -39,7 +40,7 @@ from catenary_fe.layout.parameters import (
 from catenary_fe.layout.parts import Dropper, SectionEnd, Span, Support
 from catenary_fe.layout.receptance import read_receptance, receptance_table_of
 from catenary_fe.layout.terminations import Loss
-from catenary_fe.layout.toml import read_toml
+from catenary_fe.layout.toml import read_toml, toml_value
 
 MOST_SPANS = 10_000  # of a line: 500 km, whose model no machine would take
 MOST_DROPPERS = 200_000  # of a line, likewise
@@ -256,6 +257,19 @@ class LayoutFile(Parameters):
         )
 
 
+def layout_record(path: str | Path) -> dict[str, Any]:
+    """What a layout file says, with the CSV tables that it names. Raises InputError for faulty ones."""
+    return with_tables_as_built(read_toml(Path(path), "layout"), Path(path).parent)
+
+
+def layout_bytes(path: str | Path) -> bytes:
+    """A layout file's content; where it names other files, with what they say in their place."""
+    record = read_toml(Path(path), "layout")
+    if with_tables_as_built(record, None) == record:
+        return Path(path).read_bytes()
+    return "".join(f"{key} = {toml_value(value)}\n" for key, value in layout_record(path).items()).encode()
+
+
 @checked
 def load_catenary(path: str | Path) -> Catenary:
     """Read a layout file (TOML).
@@ -263,7 +277,7 @@ def load_catenary(path: str | Path) -> Catenary:
     Raises InputError, one line for each fault that the file has.
     """
     path = Path(path)
-    record = read_toml(path, "layout")
+    record = layout_record(path)
     try:
         return LayoutFile.model_validate(record).catenary()
     except ValidationError as error:

@@ -14,10 +14,9 @@ from pydantic import BaseModel, ValidationError
 from catenary_fe.layout.catenary import Catenary
 from catenary_fe.layout.conditions import Conditions, conditions_record, load_conditions, one_of_a_run
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.files import LayoutFile, fault_lines, load_pantograph
+from catenary_fe.layout.files import LayoutFile, fault_lines, layout_record, load_pantograph
 from catenary_fe.layout.pantograph import DescribedPantograph
 from catenary_fe.layout.parameters import problem_lines, shorten
-from catenary_fe.layout.toml import read_toml
 
 PANTOGRAPH = "pantograph."  # keys of the pantograph start with this
 CONDITIONS = "conditions."  # and those of the conditions with this
@@ -41,7 +40,7 @@ class Variable:
 
     def __init__(self, layout: str | Path, conditions: str | Path | None = None) -> None:
         self.path = Path(layout)
-        self.record = read_toml(self.path, "layout")
+        self.record = layout_record(self.path)
         self._has_conditions, self._conditions_path = conditions is not None, str(conditions or "conditions")
         self.conditions_record: dict[str, Any] = {}
         if conditions is not None:

@@ -6,6 +6,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.layout import layout_text
 from catenary_fe.layout.as_built import deviations
+from catenary_fe.layout.files import layout_bytes
 from catenary_fe.layout.installed import worn_depth
 from tests.conftest import LAYOUTS
 
@@ -231,3 +232,25 @@ def test_sections_of_a_line_deviate_by_themselves():
     first = len(two.sections[0].droppers)
     assert lengths[:first] == pytest.approx(np.full(first, 0.002)) and not lengths[first:].any()
     assert deviations(section.as_designed(), "dropper_length", [1.0]).tolist() == [0.0]
+
+
+def test_deviations_from_a_table_of_their_own(tmp_path):
+    """As written in the layout; kept whole; faults by row and column."""
+    line = cf.load_catenary(LAYOUTS / "en50318_2002.toml")
+    plain = cf.save_catenary(line, tmp_path / "plain.toml").read_text(encoding="utf-8")
+    (tmp_path / "cut.csv").write_text("x_m;dropper_length_mm\n0;0\n300;6\n600;-3\n", encoding="utf-8")
+    head, spans = plain.split("\n[[span]]", 1)
+    named = tmp_path / "named.toml"
+    named.write_text(f'{head}\n[as_built]\ndropper_length = "cut.csv"\n\n[[span]]{spans}', encoding="utf-8")
+    read = cf.load_catenary(named)
+    assert read == line.replace(
+        as_built=cf.AsBuilt(dropper_length=((0.0, 0.0), (300.0, 0.006), (600.0, -0.003)))
+    )
+    (tmp_path / "kept.toml").write_bytes(layout_bytes(named))
+    (tmp_path / "cut.csv").write_text("x_m;dropper_length_mm\n0;0\n300;six\n", encoding="utf-8")
+    assert cf.load_catenary(tmp_path / "kept.toml") == read
+    with pytest.raises(cf.InputError, match=r"as_built.dropper_length: .*cut.csv: row 3, column"):
+        cf.load_catenary(named)
+    (tmp_path / "cut.csv").unlink()
+    with pytest.raises(cf.InputError, match="no such"):
+        cf.load_catenary(named)

@@ -31,6 +31,13 @@ _FORMS = {
 """Keys whose values may be the name of a file."""
 
 
+_AS_BUILT = {
+    f"as_built.{name}": _Form({"x": _X, name: Column("length")}, ("x", name))
+    for name in ("stagger", "messenger_wire_height", "dropper_length", "contact_wire_height", "pre_sag")
+}
+"""The same of a layout file."""
+
+
 def names_files(record: Mapping[str, Any]) -> bool:
     """Whether a conditions file's record names any."""
     return with_tables(record, None) != record
@@ -43,8 +50,18 @@ def with_tables(record: Mapping[str, Any], folder: Path | None) -> Record:
 
     Raises InputError, one line for each fault of the tables with its row and column.
     """
+    return _with(record, _FORMS, folder, "case")
+
+
+def with_tables_as_built(record: Mapping[str, Any], folder: Path | None) -> Record:
+    """A layout file's record likewise, also in its further sections. Raises InputError."""
+    return _with(record, _AS_BUILT, folder, "further_sections")
+
+
+def _with(record: Mapping[str, Any], forms: Mapping[str, _Form], folder: Path | None, inner: str) -> Record:
+    """A record with tables in the place of names of files, also in the list of records with this key."""
     found, faults = dict(record), []
-    for key, form in _FORMS.items():
+    for key, form in forms.items():
         *outer, name = key.split(".")
         holder = found.get(outer[0]) if outer else found
         if not isinstance(holder, dict) or not _is_file(holder.get(name)):
@@ -55,14 +72,15 @@ def with_tables(record: Mapping[str, Any], folder: Path | None) -> Record:
             faults += [f"{key}: {line}" for line in error.problems]
             continue
         found |= {outer[0]: holder | {name: rows}} if outer else {name: rows}
-    cases = found.get("case")
-    if isinstance(cases, list):
-        found["case"] = []
-        for number, case in enumerate(cases, start=1):
+    entries = found.get(inner)
+    if isinstance(entries, list):
+        found[inner] = []
+        for number, entry in enumerate(entries, start=1):
             try:
-                found["case"].append(with_tables(case, folder) if isinstance(case, dict) else case)
+                one = _with(entry, forms, folder, inner) if isinstance(entry, dict) else entry
+                found[inner].append(one)
             except InputError as error:
-                faults += [f"case {number}: {line}" for line in error.problems]
+                faults += [f"{inner} {number}: {line}" for line in error.problems]
     if faults:
         raise InputError(*faults)
     return found
