@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import catenary_fe as cf
-from catenary_fe.engines.compiled import plain
 from catenary_fe.engines.contact_solver import surface_at
 from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.layout.conditions import ContactWireIrregularity
 from tests.conftest import LAYOUTS
+from tests.engines.kernels import entry
 
 SPEED = 50.0
 
@@ -98,7 +98,7 @@ def test_surfaces_of_both_sides_are_one(shape: cf.Shape) -> None:
     surfaces = surfaces_of([path])
     for x in (0.3, 100.02, 359.0):
         height, slope = path.surface(x)
-        assert plain(surface_at)(surfaces, 0, x) == pytest.approx((height, slope), abs=1e-12)
+        assert entry(surface_at)(surfaces, 0, x) == pytest.approx((height, slope), abs=1e-12)
         assert height == pytest.approx(float(given.at(np.array([x]))[0]), abs=2e-6)
         assert slope == pytest.approx(
             float(given.at(np.array([x + 1e-4]))[0] - given.at(np.array([x - 1e-4]))[0]) / 2e-4, abs=2e-5
