@@ -20,6 +20,7 @@ from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import check_speed, plan_run
@@ -98,7 +99,9 @@ def _one_each(name: str, values: ArrayLike, count: int, most: float, unit: str) 
     if found.shape not in ((), (count,)):
         raise InputError(f"{name}: shape {found.shape} for {count} pantographs; give one for all or one each")
     if np.abs(found).max() > most:
-        raise InputError(f"{name} = {found.tolist()} {unit}: must be within ±{most:g} {unit}; look at the unit")
+        raise InputError(
+            f"{name} = {found.tolist()} {unit}: must be within ±{most:g} {unit}; look at the unit"
+        )
     return np.broadcast_to(found, (count,)).copy()
 
 
@@ -119,6 +122,8 @@ class Session:
     heights, velocities, accelerations : [m], [m/s], [m/s²], of each pantograph shape (coordinates,): its
         masses from the head down, above the nominal contact wire height, then rolls [rad]
     uplift_force : [N], shape (pantographs,), on the lowest masses
+    duration : [s] that the session may last
+    bodies : what each pantograph is made of, see :class:`catenary_fe.layout.substructure.Substructure`
     finished : whether the session has come to its end
     """
 
@@ -153,6 +158,16 @@ class Session:
     def time(self) -> float:
         """[s] since the start."""
         return self._step * self._run.done
+
+    @property
+    def duration(self) -> float:
+        """[s] that the session may last."""
+        return self._step * self._steps
+
+    @property
+    def bodies(self) -> list[Substructure]:
+        """What each pantograph is made of: its coordinates are those of heights."""
+        return [placed.body for placed in self._placed]
 
     @property
     def finished(self) -> bool:

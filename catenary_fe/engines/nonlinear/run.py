@@ -59,9 +59,7 @@ class NonlinearEngine:
         self.iterations = 0
         self._notes: list[str] = []
 
-    def begin(
-        self, case: RunCase, uplifts: Floats, steps: int, bases: Floats | None = None
-    ) -> NonlinearRun:
+    def begin(self, case: RunCase, uplifts: Floats, steps: int, bases: Floats | None = None) -> NonlinearRun:
         """A run of so many steps, in static contact at its start. Raises SolverError where there is none.
 
         bases : [m], shape (pantographs,), heights of bases that stand elsewhere; unset: none does
