@@ -1,4 +1,4 @@
-"""The line for a co-simulation: cut below the head, in steps, with its state; and as an FMU in another program."""
+"""The line for a co-simulation: cut below the head, in steps, with its state; and as an FMU elsewhere."""
 
 import json
 import subprocess
