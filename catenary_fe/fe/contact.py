@@ -213,11 +213,19 @@ class BaseLine:
 
 
 def place(
-    pantographs: Sequence[AnyPantograph], uplifts: Floats, positions: Floats, *, spatial: bool
+    pantographs: Sequence[AnyPantograph],
+    uplifts: Floats,
+    positions: Floats,
+    *,
+    spatial: bool,
+    height: float | None = None,
 ) -> list[PlacedPantograph]:
-    """Pantographs with their uplifts [N] at positions [m] along the track."""
+    """Pantographs with their uplifts [N] at positions [m] along the track.
+
+    height : [m] of the contact wire above the rail; unset: that at which each pantograph works
+    """
     return [
-        PlacedPantograph(pantograph.assemble(spatial=spatial), float(uplift), float(position))
+        PlacedPantograph(pantograph.assemble(spatial=spatial, height=height), float(uplift), float(position))
         for pantograph, uplift, position in zip(pantographs, uplifts, positions, strict=True)
     ]
 

@@ -24,6 +24,7 @@ from catenary_fe.layout.files import layout_schema, load_catenary, load_pantogra
 from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.installed import Wear
 from catenary_fe.layout.line import Line, join_sections, read_catenary
+from catenary_fe.layout.linkage import LinkagePantograph
 from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.overlap import Overlap
 from catenary_fe.layout.pantograph import (
@@ -32,7 +33,6 @@ from catenary_fe.layout.pantograph import (
     DescribedPantograph,
     ElasticPantograph,
     Pantograph,
-    Stage,
     recorded_pantograph,
 )
 from catenary_fe.layout.parameters import GRAVITY
@@ -46,7 +46,7 @@ from catenary_fe.layout.parts import (
     Termination,
     Wire,
 )
-from catenary_fe.layout.pushed import AerodynamicForce, Panhead
+from catenary_fe.layout.pushed import AerodynamicForce, Panhead, Stage
 from catenary_fe.layout.receptance import ReceptancePantograph
 from catenary_fe.layout.rules import layout_warnings
 from catenary_fe.layout.terminations import ends_in_words
@@ -73,6 +73,7 @@ __all__ = [
     "Ice",
     "InputError",
     "Line",
+    "LinkagePantograph",
     "MeasuredWire",
     "Overlap",
     "Panhead",

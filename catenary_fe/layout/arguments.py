@@ -154,8 +154,14 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "WireProblem": ("a WireProblem", "give WireProblem(wire=..., x=...)"),
 }
 _UNIONS = {
-    "DescribedPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph"),
-    "AnyPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph", "AttachedPantograph"),
+    "DescribedPantograph": ("Pantograph", "ElasticPantograph", "ReceptancePantograph", "LinkagePantograph"),
+    "AnyPantograph": (
+        "Pantograph",
+        "ElasticPantograph",
+        "ReceptancePantograph",
+        "LinkagePantograph",
+        "AttachedPantograph",
+    ),
 }
 _PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", lambda v: isinstance(v, Real) and not isinstance(v, bool | np.bool_)),

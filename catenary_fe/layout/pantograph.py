@@ -10,78 +10,18 @@ from pydantic import model_validator
 
 from catenary_fe.layout.arguments import number
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.linkage import LinkagePantograph
 from catenary_fe.layout.parameters import (
     NonEmpty,
     NonNegative,
     Number,
-    Parameters,
     Positive,
     Text,
     shorten,
 )
-from catenary_fe.layout.pushed import Base, KnownPantograph, Panhead, PushedPantograph
+from catenary_fe.layout.pushed import Base, KnownPantograph, Panhead, PushedPantograph, Stage
 from catenary_fe.layout.receptance import ReceptancePantograph
-from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Joint, Strip, Substructure
-
-
-class Stage(Parameters):
-    """A mass with the spring and damper below it, which join it to the next stage or to the base."""
-
-    mass: Positive
-    """[kg] of the stage"""
-    stiffness: NonNegative
-    """[N/m] of the spring below the mass"""
-    damping: NonNegative = 0.0
-    """[N s/m] of the damper below the mass"""
-    damping_up: NonNegative | None = None
-    """[N s/m] of a damper that differs: while the mass rises against what is below it"""
-    damping_down: NonNegative | None = None
-    """[N s/m] likewise, while it comes down; both instead of `damping`"""
-    friction: NonNegative = 0.0
-    """[N] dry, between the mass and what is below it"""
-    travel: tuple[Positive, Positive] | None = None
-    """[m] down and up by which the mass can move from where the spring below it is force-free, before it
-    meets its stops; unset: no stops"""
-    stop_stiffness: Positive = 1e6
-    """[N/m] of the stops (a value of an SNCF thesis)"""
-
-    @model_validator(mode="after")
-    def _one_damper(self) -> Self:
-        up, down = self.damping_up, self.damping_down
-        if (up is None) != (down is None):
-            raise ValueError("damping_up and damping_down belong together: give both or neither")
-        if up is not None and self.damping:
-            raise ValueError("damping has no effect beside damping_up and damping_down; leave it out")
-        if self.travel is None and self.stop_stiffness != type(self).model_fields["stop_stiffness"].default:
-            raise ValueError("stop_stiffness has no effect without travel; give both or neither")
-        return self
-
-    def joint(self, upper: int, lower: int, share: float = 1.0, lever: float = 0.0) -> Joint:
-        """The spring and damper below the mass, or a share of them, with what is not linear there."""
-        up, down = (self.damping if each is None else each for each in (self.damping_up, self.damping_down))
-        common = min(up, down)
-        return Joint(
-            upper,
-            lower,
-            share * self.stiffness,
-            share * common,
-            lever,
-            rising=share * (up - common),
-            falling=share * (down - common),
-            friction=share * self.friction,
-            travel=self.travel,
-            stop_stiffness=share * self.stop_stiffness,
-        )
-
-    @property
-    def in_words(self) -> str:
-        """One line."""
-        damper = f"{self.damping:g} N s/m"
-        if self.damping_up is not None:
-            damper = f"{self.damping_up:g} N s/m up and {self.damping_down:g} down"
-        friction = f", {self.friction:g} N of friction" if self.friction else ""
-        stops = f", stops at −{self.travel[0]:g} and {self.travel[1]:g} m" if self.travel else ""
-        return f"{self.mass:g} kg on {self.stiffness:g} N/m, {damper}{friction}{stops}"
+from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
 
 
 class Pantograph(PushedPantograph):
@@ -102,10 +42,11 @@ class Pantograph(PushedPantograph):
         """What the head is, be it given or the usual one."""
         return self.head or Panhead()
 
-    def assemble(self, *, spatial: bool) -> Substructure:
+    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
         """Its bodies, joints, strips and contact law; two strips share the head's mass, spring and damper.
 
         spatial : whether the line has coordinates across the track, in which a head on two springs rolls
+        height : [m] of the contact wire above the rail; of no use here
         """
         head, first, count = self.panhead, self.stages[0], self.panhead.strips
         lever = head.spring_distance / 2 if head.spring_distance and spatial else 0.0
@@ -209,7 +150,7 @@ class ElasticPantograph(_WithoutMasses):
         """[N] on a wire at an elevation [m] above its nominal height. Raises InputError unless finite."""
         return self.assemble(spatial=False).contact.force(-number("elevation", elevation, "m"))
 
-    def assemble(self, *, spatial: bool) -> Substructure:
+    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
         """One strip without mass at the nominal contact wire height, and the law."""
         law = ContactLaw(self.stiffness, preload=self.force or 0.0, points=self.law)
         return Substructure((), (), (), (Strip(),), law, self.base == "contact wire")
@@ -247,7 +188,7 @@ class AttachedPantograph(_WithoutMasses):
         """Its script moves it, or not."""
         return "rail"
 
-    def assemble(self, *, spatial: bool) -> Substructure:
+    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
         """Raises InputError: only the script that made the bodies knows them."""
         raise InputError(
             f"{self.name}: {self.source}, which no record knows; run the script again that made them"
@@ -265,12 +206,14 @@ class AttachedPantograph(_WithoutMasses):
         return 0.0
 
 
-DescribedPantograph = Pantograph | ElasticPantograph | ReceptancePantograph
+DescribedPantograph = Pantograph | ElasticPantograph | ReceptancePantograph | LinkagePantograph
 AnyPantograph = DescribedPantograph | AttachedPantograph
 
 
 def kind_of(record: dict[str, Any]) -> type[DescribedPantograph]:
     """The class of the pantograph that a file or a record describes."""
+    if "lower_arm" in record:
+        return LinkagePantograph
     if "stages" in record:
         return Pantograph
     if "receptance" in record:

@@ -12,6 +12,7 @@ from catenary_fe.layout.arguments import number
 from catenary_fe.layout.current_collection import MeanForceRule, target_mean_force
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import NonNegative, Number, Parameters, Positive, Text, shorten
+from catenary_fe.layout.substructure import Joint
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -59,6 +60,66 @@ class Panhead(Parameters):
     def rolling_inertia(self, mass: float) -> float:
         """[kg m²] of a head of this mass [kg]."""
         return self.roll_inertia or mass * self.width**2 / 12
+
+
+class Stage(Parameters):
+    """A mass with the spring and damper below it, which join it to the next stage or to the base."""
+
+    mass: Positive
+    """[kg] of the stage"""
+    stiffness: NonNegative
+    """[N/m] of the spring below the mass"""
+    damping: NonNegative = 0.0
+    """[N s/m] of the damper below the mass"""
+    damping_up: NonNegative | None = None
+    """[N s/m] of a damper that differs: while the mass rises against what is below it"""
+    damping_down: NonNegative | None = None
+    """[N s/m] likewise, while it comes down; both instead of `damping`"""
+    friction: NonNegative = 0.0
+    """[N] dry, between the mass and what is below it"""
+    travel: tuple[Positive, Positive] | None = None
+    """[m] down and up by which the mass can move from where the spring below it is force-free, before it
+    meets its stops; unset: no stops"""
+    stop_stiffness: Positive = 1e6
+    """[N/m] of the stops (a value of an SNCF thesis)"""
+
+    @model_validator(mode="after")
+    def _one_damper(self) -> Self:
+        up, down = self.damping_up, self.damping_down
+        if (up is None) != (down is None):
+            raise ValueError("damping_up and damping_down belong together: give both or neither")
+        if up is not None and self.damping:
+            raise ValueError("damping has no effect beside damping_up and damping_down; leave it out")
+        if self.travel is None and self.stop_stiffness != type(self).model_fields["stop_stiffness"].default:
+            raise ValueError("stop_stiffness has no effect without travel; give both or neither")
+        return self
+
+    def joint(self, upper: int, lower: int, share: float = 1.0, lever: float = 0.0) -> Joint:
+        """The spring and damper below the mass, or a share of them, with what is not linear there."""
+        up, down = (self.damping if each is None else each for each in (self.damping_up, self.damping_down))
+        common = min(up, down)
+        return Joint(
+            upper,
+            lower,
+            share * self.stiffness,
+            share * common,
+            lever,
+            rising=share * (up - common),
+            falling=share * (down - common),
+            friction=share * self.friction,
+            travel=self.travel,
+            stop_stiffness=share * self.stop_stiffness,
+        )
+
+    @property
+    def in_words(self) -> str:
+        """One line."""
+        damper = f"{self.damping:g} N s/m"
+        if self.damping_up is not None:
+            damper = f"{self.damping_up:g} N s/m up and {self.damping_down:g} down"
+        friction = f", {self.friction:g} N of friction" if self.friction else ""
+        stops = f", stops at −{self.travel[0]:g} and {self.travel[1]:g} m" if self.travel else ""
+        return f"{self.mass:g} kg on {self.stiffness:g} N/m, {damper}{friction}{stops}"
 
 
 class KnownPantograph(Parameters):

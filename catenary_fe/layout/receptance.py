@@ -130,7 +130,7 @@ class ReceptancePantograph(PushedPantograph):
         """A level head with one strip."""
         return self.head or Panhead()
 
-    def assemble(self, *, spatial: bool) -> Substructure:
+    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
         """The chain; dampers between any two masses, and from each to the base."""
         chain, n = self.chain, len(self.chain.masses)
         D = chain.damping.tolist()

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.theory.linkage import Linkage
+
 Floats = NDArray[np.float64]
 
 STOP, DAMPER, FRICTION, FRAME = range(4)  # kinds of laws
@@ -170,6 +172,28 @@ class ContactLaw:
 
 
 @dataclass(frozen=True)
+class Mechanism:
+    """A frame of bars, for a model that has bodies of its own for them.
+
+    linkage : the bars
+    apex : [m] of the apex above the base pivot where the frame's coordinate is 0
+    torque : [N m] that drives it, or a table over the lower arm's angle; None: a cam balances all weight
+    lifted : [N] of the uplift force that torque and weights make themselves
+    carried : [N] weight of what stands on the apex
+    """
+
+    linkage: Linkage
+    apex: float
+    torque: float | tuple[tuple[float, float], ...] | None = None
+    lifted: float = 0.0
+    carried: float = 0.0
+
+    def angle(self, risen: float) -> float:
+        """[rad] of the lower arm with the apex so many metres above its place at rest."""
+        return self.linkage.angle_at(self.apex + risen)
+
+
+@dataclass(frozen=True)
 class Substructure:
     """A pantograph's equations: M ÿ + D ẏ + K y = uplift · load − contact forces · rows of the strips.
 
@@ -182,6 +206,7 @@ class Substructure:
     contact : the law between each strip and a wire
     follows : whether the base's height follows the contact wire's design height, else the rail
     frame : of a frame's motion that is not linear, or None
+    mechanism : of what that frame is made, or None
     """
 
     bodies: tuple[Body, ...]
@@ -191,6 +216,7 @@ class Substructure:
     contact: ContactLaw
     follows: bool = True
     frame: Law | None = None
+    mechanism: Mechanism | None = None
 
     @cached_property
     def laws(self) -> tuple[Law, ...]:

@@ -91,7 +91,7 @@ def _motion(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Substruct
 
     Both [m] above the nominal contact wire height.
     """
-    body = pantograph.assemble(spatial=False)
+    body = pantograph.assemble(spatial=False, height=run.catenary.contact_wire_height)
     heights = run.data["mass_height"].values[number, : body.size] - run.catenary.contact_wire_height
     return body, heights, _risen(run, number, body)
 

@@ -22,6 +22,7 @@ Complex = NDArray[np.complex128]
 LOWEST, HIGHEST, VALUES = 0.1, 50.0, 400  # [Hz] and number of the frequencies that are usual
 REACH = 0.5  # [m] above and below the base spring's force-free height, of static forces
 _STEPS = 20  # of that range
+_PASSES, _SETTLED = 50, 1e-9  # of what is not linear, and [m] by which it may still move
 _STILL = 1e-6  # share of the highest own frequency below which one is that of a body that nothing holds
 
 
@@ -162,13 +163,21 @@ def _receptance(body: Substructure, frequency: Floats) -> Complex:
 
 
 def _static_forces(body: Substructure, uplift: float, heights: Floats) -> Floats:
-    """[N] on a wire that holds the head at heights [m]: K y = uplift · load - force · head, head · y = z."""
+    """[N] on a wire that holds the head at heights [m]: K y + laws = uplift · load - force · head."""
     if not body.size:
         return np.array([body.contact.force(-z) for z in heights])
-    n, head = body.size, _head(body)
-    bordered = np.block([[body.stiffness, head[:, None]], [head[None, :], np.zeros((1, 1))]])
-    right = np.vstack([np.outer(uplift * body.load, np.ones(heights.size)), heights])
-    return np.asarray(np.linalg.solve(bordered, right)[n])
+    n, head, found = body.size, _head(body), np.zeros(heights.size)
+    for i, z in enumerate(heights.tolist()):
+        y = np.full(n, z)
+        for _ in range(_PASSES):
+            pull, tangent, _ = body.static_laws(y)
+            matrix = np.block([[body.stiffness + tangent, head[:, None]], [head[None, :], np.zeros((1, 1))]])
+            right = np.concatenate([uplift * body.load - pull + tangent @ y, [z]])
+            before, solved = y, np.linalg.solve(matrix, right)
+            y, found[i] = solved[:n], solved[n]
+            if np.abs(y - before).max() < _SETTLED:
+                break
+    return found
 
 
 def _modes(body: Substructure) -> tuple[Floats, Floats]:

@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 _GRAVITY = 9.81  # [m/s²]
 _SCAN = 4001  # angles of the lower arm at which the working range is looked for
 _RISES = 0.5, 4.0  # of the apex with the lower arm's angle, over that arm's length: else near a dead point
+_POLISH = 5  # steps of Newton's method from a neighbour in the scan: two are enough
 _LEAST_RISE = 0.2  # of the upper arm's length: what rises less is no frame
 
 
@@ -163,17 +164,26 @@ class Linkage:
 
         Raises ValueError for one that it does not reach.
         """
-        from scipy.optimize import brentq
+        return float(self.angles_at([height])[0])
 
-        low, high = self.heights
-        if not low <= height <= high:
+    def angles_at(self, heights: ArrayLike) -> Floats:
+        """[rad] of the lower arm with the apex at heights [m] above the base pivot, shape (heights,).
+
+        Raises ValueError where it does not reach one.
+        """
+        wanted, (low, high) = np.asarray(heights, dtype=float), self.heights
+        if not ((low <= wanted) & (wanted <= high)).all():
             raise ValueError(f"the apex reaches {low:.3f} to {high:.3f} m above the base pivot")
         first, last = self.working
-
-        def missing(angle: float) -> float:
-            return float(self.pose(angle).apex[1]) - height
-
-        return float(brentq(missing, first, last, xtol=1e-14, rtol=1e-14))
+        scan = np.linspace(first, last, _SCAN)
+        found = np.interp(wanted, self.pose(scan).apex[1], scan)
+        for _ in range(_POLISH):
+            pose = self.pose(found)
+            found = np.clip(
+                found - (pose.apex[1] - wanted) / pose.apex_rate[1], min(first, last), max(first, last)
+            )
+        angles: Floats = found
+        return angles
 
     def rise(self, lower: ArrayLike) -> Floats:
         """[m/rad] by which the apex rises with the lower arm's angle."""

@@ -6,6 +6,7 @@ The schemas say which keys there are. A key that is new there has no value here,
 import copy
 import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from catenary_fe.layout import layout_schema, layout_warnings, pantograph_schema
 from catenary_fe.layout.files import LayoutFile
 from catenary_fe.views.report.tables import _line_table, _pantograph_table, _wire_table
 
+EXAMPLES = Path(__file__).parents[2] / "docs/reference/examples"
 PLANE = """
 name = "two spans in the plane"
 evaluated_spans = [2]
@@ -146,6 +148,19 @@ ELASTIC: dict[str, Any] = {
     "law": [[0.0, 150.0], [0.1, 90.0]],
 }
 RECEPTANCE: dict[str, Any] = {"receptance": "", "order": 1, "static_stiffness": 0.0, "head_width": 1.9}
+LINKAGE: dict[str, Any] = {
+    "lower_arm.length": 1.55, "lower_arm.mass": 25.0, "lower_arm.centre": 0.7, "lower_arm.inertia": 6.0,
+    "upper_arm.length": 2.1, "upper_arm.mass": 15.0, "upper_arm.centre": 0.8, "upper_arm.inertia": 5.0,
+    "upper_arm.lever": 0.21, "upper_arm.lever_angle": 3.4,
+    "coupling_rod.length": 1.66, "coupling_rod.mass": 6.0, "coupling_rod.centre": 0.8,
+    "coupling_rod.inertia": 1.0, "coupling_rod.pivot": [-0.2, -0.3], "apex_mass": 7.0,
+    "head_stages.mass": 8.0, "head_stages.stiffness": 5e3, "head_stages.damping": 20.0,
+    "pivot_height": 3.8, "head_height": 0.1, "working_height": 5.2, "reach": [0.5, 2.5],
+    "stop_stiffness": 2e5, "drive.torque": 1400.0, "drive.bellows_stiffness": 200.0, "drive.lag": 0.3,
+    "damper.up": 500.0, "damper.down": 500.0, "joint_friction": 1.0,
+    "head_stages.damping_up": 5.0, "head_stages.damping_down": 5.0, "head_stages.friction": 2.0,
+    "head_stages.travel": [0.03, 0.04], "head_stages.stop_stiffness": 1e5,
+}  # fmt: skip
 
 
 def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Iterator[str]:
@@ -163,7 +178,8 @@ def keys(schema: dict[str, Any], node: dict[str, Any], place: str = "") -> Itera
 
 
 @pytest.mark.parametrize(
-    ("schema", "known"), [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC | RECEPTANCE)]
+    ("schema", "known"),
+    [(layout_schema(), LAYOUT), (pantograph_schema(), PANTOGRAPH | ELASTIC | RECEPTANCE | LINKAGE)],
 )
 def test_a_value_is_known_for_every_key(schema, known):
     several = ("further_sections.", "overlap.")  # below
@@ -359,3 +375,21 @@ def test_a_key_of_a_pantograph_by_its_receptance_acts(key):
     values = RECEPTANCE | {"receptance": [[f, 0.9 * z, phase] for f, z, phase in rows]} | PANTOGRAPH
     before, after = (cf.ReceptancePantograph(**record) for record in (base, base | {key: values[key]}))
     assert (*known_of(before), before.panhead) != (*known_of(after), after.panhead)
+
+
+@pytest.mark.parametrize("place", LINKAGE)
+def test_a_key_of_a_mechanism_acts(place):
+    base = tomllib.loads((EXAMPLES / "pantograph_linkage.toml").read_text(encoding="utf-8"))
+    before = cf.LinkagePantograph.model_validate(base)
+    changed = put(base, place, LINKAGE[place])
+    beside = {"drive.torque": "give exactly one", "head_stages.damping_up": "give both or neither",
+              "head_stages.damping_down": "give both or neither",
+              "head_stages.stop_stiffness": "give both or neither"}  # fmt: skip
+    if place in beside:
+        with pytest.raises(cf.InputError, match=beside[place]):
+            cf.LinkagePantograph(**changed)
+        if place != "drive.torque":
+            return
+        changed.pop("mean_force")
+    after = cf.LinkagePantograph.model_validate(changed)
+    assert known_of(after) != known_of(before)

@@ -171,6 +171,8 @@ class ExudynModel:
             risen = 0.0 if x is None else self.system.base_line.under(body, float(x))
             force = float(uplift) * body.load + risen * body.base_load
             force += height * body.base_stiffness + rate * body.base_damping
+            if body.mechanism:  # the bars' own loads lift the head, and carry it
+                force -= (body.mechanism.lifted + body.mechanism.carried) * body.load
             for load, coordinate in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", float(force[coordinate]))
             for contact in parts.contacts:

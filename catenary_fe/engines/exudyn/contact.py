@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import exudyn as exu
@@ -11,6 +11,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.engines.exudyn.frame import FrameParts, add_frame
 from catenary_fe.engines.exudyn.laws import joint_law, push_only
 from catenary_fe.fe.system import System
 from catenary_fe.layout import AnyPantograph, AttachedPantograph
@@ -23,6 +24,7 @@ _TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
     1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
     2: [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
 }
+_GUIDE_MASS = 1e-3  # [kg] of a frame's coordinate: its bars have the mass
 _HEAVE, _ROLL = 2, 3  # coordinates of a rigid body's node
 
 
@@ -70,6 +72,7 @@ class PantographParts:
     strips : position markers on the middles of the collector strips
     contacts : each strip on each contact wire
     masses : position markers whose heights results record
+    frame : bars on joints, of a mechanism
     """
 
     record: AnyPantograph
@@ -81,6 +84,7 @@ class PantographParts:
     strips: list[int]
     contacts: list[ContactParts]
     masses: list[int]
+    frame: FrameParts | None = None
 
     def index(self, mbs: exu.MainSystem) -> Integers:
         """Shape (coordinates,): numbers of its coordinates among those of the assembled system."""
@@ -96,16 +100,25 @@ def add_pantograph(
     pantograph: Any,
 ) -> PantographParts:
     """Add whatever assembles as a pantograph. Its weight is balanced by its frame."""
-    assembled, axes = pantograph.assemble(spatial=system.spatial), system.axes
+    assembled, axes = (
+        pantograph.assemble(spatial=system.spatial, height=system.contact_wire_height),
+        system.axes,
+    )
     nominal = system.contact_wire_height * np.eye(3)[axes - 1]
     bodies, coordinates, roll_places = [], [], []
-    for body in assembled.bodies:
-        number, node = _add_body(mbs, body, nominal, axes - 1, ground)
+    mechanism, guide = (
+        assembled.mechanism,
+        np.array(assembled.frame.row if assembled.frame else (0.0,)).argmax(),
+    )
+    for n, body in enumerate(assembled.bodies):
+        own = replace(body, mass=_GUIDE_MASS) if mechanism and n == guide else body
+        number, node = _add_body(mbs, own, nominal, axes - 1, ground)
         bodies.append(number)
         coordinates.append((node, 0 if body.inertia is None else _HEAVE))
         if body.inertia is not None:
             roll_places.append((node, _ROLL))
     coordinates += roll_places
+    frame = add_frame(mbs, mechanism, coordinates[guide][0]) if mechanism else None
     on = [_coordinate_marker(mbs, place) for place in coordinates]
     loads = [
         (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=on[at], load=0.0))), int(at))
@@ -130,6 +143,7 @@ def add_pantograph(
         strips=strips,
         contacts=contacts,
         masses=[int(marker) for marker in middles],
+        frame=frame,
     )
 
 
@@ -189,7 +203,10 @@ def _strip_marker(mbs: exu.MainSystem, bodies: list[int], strip: Strip, nominal:
 def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], ground: int) -> list[int]:
     """Springs and dampers between heights, and of bodies that roll against the level, on their lever."""
     found = []
+    own = assembled.mechanism is not None
     for joint in assembled.joints:
+        if own and joint.lower == BASE and assembled.frame and assembled.frame.row[joint.upper]:
+            joint = replace(joint, stiffness=0.0)  # what the bars do by themselves
         lower = ground if joint.lower == BASE else on[joint.lower]
         springs = [(on[joint.upper], lower, 1.0)]
         if joint.upper in assembled.rolling:

@@ -100,12 +100,20 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
     q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if own:
         records = case.pantographs[:known]
-        placed = place(records, uplifts[:known], case.start[:known], spatial=system.spatial)
+        placed = place(
+            records,
+            uplifts[:known],
+            case.start[:known],
+            spatial=system.spatial,
+            height=system.contact_wire_height,
+        )
         placed = [replace(p, base=base) for p, base in zip(placed, bases, strict=False)]
         moved, placed = static_contact(system, placed)
         q[: system.dof.size] = moved
         for parts, where in zip(own, placed, strict=True):
             q[parts.index(mbs)] = where.heights
+            if parts.frame:
+                parts.frame.follow(mbs, q)
     else:
         q[: system.dof.size] = 0.0
     model.load_at(0.0)
@@ -391,5 +399,5 @@ class _EnergyBalance:
         total = system.energy(q[: self._line]) + float(moving @ (system.mass @ moving) / 2)
         for _, body, index, uplift in self._bodies:
             y, w = q[index], v[index]
-            total += float((w @ body.mass @ w + y @ body.stiffness @ y) / 2 - uplift * body.load @ y)
+            total += body.energy(y, w) - uplift * float(body.load @ y)
         return total

@@ -128,7 +128,13 @@ class LinearisedEngine:
             with suppress(CatenaryError):
                 case = job.task.case
                 placed.append(
-                    place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
+                    place(
+                        case.pantographs,
+                        job.task.uplifts,
+                        case.start,
+                        spatial=self._system.spatial,
+                        height=self._system.contact_wire_height,
+                    )
                 )
         steps = max(job.steps for job in jobs)
         return Sizes.of(placed, len(self.setup.model.contacts), steps, self._every)
@@ -136,7 +142,13 @@ class LinearisedEngine:
     def _begin(self, job: _Job, batch: Batch, slot: int) -> bool:
         begin, case = clock.perf_counter(), job.task.case
         try:
-            placed = place(case.pantographs, job.task.uplifts, case.start, spatial=self._system.spatial)
+            placed = place(
+                case.pantographs,
+                job.task.uplifts,
+                case.start,
+                spatial=self._system.spatial,
+                height=self._system.contact_wire_height,
+            )
             placed = self._system.base_line.moving(placed, case.speed, self._time.step, job.steps)
             job.start = static_contact(self.setup, placed, case.speed, batch.signals[:, 0])
         except CatenaryError as error:

@@ -64,7 +64,13 @@ class NonlinearEngine:
 
         bases : [m], shape (pantographs,), heights of bases that stand elsewhere; unset: none does
         """
-        placed = place(case.pantographs, uplifts, case.start, spatial=self._system.spatial)
+        placed = place(
+            case.pantographs,
+            uplifts,
+            case.start,
+            spatial=self._system.spatial,
+            height=self._system.contact_wire_height,
+        )
         placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
         if bases is None:
             moved, placed = static_contact(self._system, placed)
