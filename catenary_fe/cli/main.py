@@ -13,6 +13,7 @@ import click
 
 from catenary_fe.cli.cases import cases
 from catenary_fe.cli.design import form, info, modes, static
+from catenary_fe.cli.fmu import fmu
 from catenary_fe.cli.layouts import layout
 from catenary_fe.cli.pantograph import pantograph
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
@@ -66,6 +67,7 @@ _SHORT_HELP = {
     run: "Run pantographs along a layout.",
     sweep: "Runs over speeds, pantographs and values of a layout.",
     scatter: "Samples of values that scatter, and what matters.",
+    fmu: "The line for a co-simulation, as an FMU.",
     report: "One HTML page of a run, to read and hand on.",
     compare: "Runs side by side, or a run beside a line test.",
     film: "Film of a run, as GIF or MP4.",

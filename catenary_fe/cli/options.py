@@ -15,9 +15,12 @@ from catenary_fe.cli.terminal import Answer
 from catenary_fe.layout import (
     Catenary,
     Conditions,
+    DescribedPantograph,
+    InputError,
     PowerSystem,
     load_catenary,
     load_conditions,
+    load_pantograph,
 )
 from catenary_fe.layout.conditions import one_of_a_run
 from catenary_fe.layout.files import MOST_SPANS
@@ -132,6 +135,31 @@ def pantograph_names(
     begun = incomplete.strip("'\"").casefold()
     names = [name for name in library.names("pantographs") if name.casefold().startswith(begun)]
     return [CompletionItem(shlex.quote(name)) for name in names] + [CompletionItem(incomplete, type="file")]
+
+
+pantographs = click.option(
+    "--pantograph",
+    "names",
+    multiple=True,
+    required=True,
+    shell_complete=pantograph_names,
+    help="Name in the library, or TOML file.",
+)
+positions = click.option(
+    "--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start."
+)
+
+
+def read_pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[DescribedPantograph]:
+    """One pantograph a position; a single name serves for all positions. Raises InputError."""
+    loaded = [load_pantograph(name) for name in names]
+    if len(loaded) == 1 and len(positions) > 1:
+        return loaded * len(positions)
+    if len(loaded) > 1 and len(positions) not in (0, len(loaded)):
+        raise InputError(
+            f"{counted(len(positions), 'position')} for {len(loaded)} pantographs: give one for each"
+        )
+    return loaded
 
 
 class ManyValues(click.Command):

@@ -16,13 +16,10 @@ from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, r
 from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
 from catenary_fe.cli.verdicts import evaluated, exit_code, with_elasticity
 from catenary_fe.layout import (
-    DescribedPantograph,
     InputError,
     PowerSystem,
     RunInterrupted,
     SolverError,
-    counted,
-    load_pantograph,
 )
 from catenary_fe.results import checks_in_words, criteria_in_words
 from catenary_fe.results.check import checks_table
@@ -50,15 +47,8 @@ WIRE_INTERVAL = 10.0  # [ms] a wave of 440 km/h runs 1.2 m, about an element, fr
 
 @click.command(cls=options.ManyValues, many=("--pantograph-at",), numbers=True, epilog=EPILOG)
 @options.layout
-@click.option(
-    "--pantograph",
-    "names",
-    multiple=True,
-    required=True,
-    shell_complete=options.pantograph_names,
-    help="Name in the library, or TOML file.",
-)
-@click.option("--pantograph-at", "positions", multiple=True, type=float, help="Positions in m at the start.")
+@options.pantographs
+@options.positions
 @click.option("--speed-kmh", type=float, required=True, help="Speed in km/h.")
 @options.method(
     "nonlinear", "linearised", "exudyn", help="Linearised: about the static state, many times faster."
@@ -112,7 +102,7 @@ def run(  # long: an argument an option
     catenary, output = options.read_layout(layout, planar), answer.folder
     if spans:
         catenary = catenary.replace(evaluated_spans=tuple(spans))
-    pantographs = _pantographs(names, positions)
+    pantographs = options.read_pantographs(names, positions)
     weather = options.read_conditions(conditions) if conditions else None
     files = InputFiles.read(layout, names, conditions) if output else InputFiles(b"", ())
     if store_wire_ms and not output:
@@ -233,18 +223,6 @@ def write_run(
     if rows:
         title = _heading(shape.catenary.name, summary)
         folder.picture("criteria.png", plot_criteria(rows, title=title))
-
-
-def _pantographs(names: tuple[str, ...], positions: tuple[float, ...]) -> list[DescribedPantograph]:
-    """One pantograph a position; a single name serves for all positions."""
-    loaded = [load_pantograph(name) for name in names]
-    if len(loaded) == 1 and len(positions) > 1:
-        return loaded * len(positions)
-    if len(loaded) > 1 and len(positions) not in (0, len(loaded)):
-        raise InputError(
-            f"{counted(len(positions), 'position')} for {len(loaded)} pantographs: give one for each"
-        )
-    return loaded
 
 
 def _print_summary(title: str, summary: dict[str, Any]) -> None:

@@ -238,9 +238,9 @@ def load_pantographs(
         heads.inverse[slot, p, :m, :m] = np.linalg.inv(matrix)
         heads.load[slot, p, :m] = placed.uplift * body.load
         heads.base_load[slot, p, :m] = body.base_load
+        heads.base_stiffness[slot, p, :m] = body.base_stiffness
+        heads.base_damping[slot, p, :m] = body.base_damping
         if placed.base:
-            heads.base_stiffness[slot, p, :m] = body.base_stiffness
-            heads.base_damping[slot, p, :m] = body.base_damping
             n, row = len(placed.base.values), slot * heads.follows.shape[1] + p
             heads.base.step[row], heads.base.last[row] = placed.base.step, n - 1
             heads.base.values[row, :n] = placed.base.values

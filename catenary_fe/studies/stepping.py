@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from io import BytesIO
 from types import TracebackType
 from typing import Self
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +20,7 @@ from catenary_fe.layout import AnyPantograph, InputError
 from catenary_fe.layout.arguments import checked, number, numbers, whole
 from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import check_speed, plan_run
@@ -44,6 +47,8 @@ def stepping(
     time: TimeSettings | None = None,
     duration: float | None = None,
     conditions: Conditions | Sequence[Effect] | None = None,
+    uplift_force: ArrayLike | None = None,
+    base_height: ArrayLike | None = None,
 ) -> Session:
     """A nonlinear run that goes on step by step, by what a script asks for: see :class:`Session`.
 
@@ -55,6 +60,9 @@ def stepping(
     time : settings of the time integration
     duration : [s] that the session may last; unset: until the line's end is reached at this speed
     conditions : the line is settled under them first, or effects
+    uplift_force : [N] in static contact at the start and then until a step has another one, one for all
+        pantographs or one each; unset: their own
+    base_height : [m] by which the bases are lifted there, likewise; unset: 0
 
     Raises InputError as :func:`simulate` does, SolverError without static contact.
     """
@@ -66,16 +74,43 @@ def stepping(
     steps = case.steps(time.step)
     if duration is not None:
         steps = int(np.ceil(number("duration", duration, "s", least=FEWEST * time.step) / time.step - 1e-9))
-    force = MeanForce(pantographs, speed)
-    if force.sought:
-        force = aimed(shape, case, time)
-    run = NonlinearEngine(shape.system, time).begin(case, force.uplifts, steps)
+    if uplift_force is not None:
+        uplifts = _one_each("uplift_force", uplift_force, len(pantographs), STRONGEST, "N")
+    else:
+        force = MeanForce(pantographs, speed)
+        uplifts = (aimed(shape, case, time) if force.sought else force).uplifts
+    bases = None
+    if base_height is not None:
+        _refuse_moving_bases(shape, "base_height")
+        bases = _one_each("base_height", base_height, len(pantographs), HIGHEST, "m")
+    run = NonlinearEngine(shape.system, time).begin(case, uplifts, steps, bases)
 
     def label(history: History, *, steered: bool) -> Run:
         warnings = [*case.warnings, *([STEERED] if steered else [])]
-        return make_run(shape, case, force.uplifts, time, history, warnings, "nonlinear", scripted=steered)
+        return make_run(shape, case, uplifts, time, history, warnings, "nonlinear", scripted=steered)
 
-    return Session(run, steps, time.step, shape, label)
+    given = uplift_force is not None or base_height is not None
+    return Session(run, steps, time.step, shape, label, steered=given)
+
+
+def _one_each(name: str, values: ArrayLike, count: int, most: float, unit: str) -> Floats:
+    """Shape (count,), of one for all pantographs or one each, within a bound. Raises InputError."""
+    found = numbers(name, values)
+    if found.shape not in ((), (count,)):
+        raise InputError(f"{name}: shape {found.shape} for {count} pantographs; give one for all or one each")
+    if np.abs(found).max() > most:
+        raise InputError(
+            f"{name} = {found.tolist()} {unit}: must be within ±{most:g} {unit}; look at the unit"
+        )
+    return np.broadcast_to(found, (count,)).copy()
+
+
+def _refuse_moving_bases(shape: Shape, what: str) -> None:
+    if shape.system.base_line.motions:
+        raise InputError(
+            f"{what}: the conditions move the bases already, by the speed at the start; leave their base"
+            f" motion out, or {what}"
+        )
 
 
 class Session:
@@ -87,15 +122,24 @@ class Session:
     heights, velocities, accelerations : [m], [m/s], [m/s²], of each pantograph shape (coordinates,): its
         masses from the head down, above the nominal contact wire height, then rolls [rad]
     uplift_force : [N], shape (pantographs,), on the lowest masses
+    duration : [s] that the session may last
+    bodies : what each pantograph is made of, see :class:`catenary_fe.layout.substructure.Substructure`
     finished : whether the session has come to its end
     """
 
     def __init__(
-        self, run: NonlinearRun, steps: int, step: float, shape: Shape, label: Callable[..., Run]
+        self,
+        run: NonlinearRun,
+        steps: int,
+        step: float,
+        shape: Shape,
+        label: Callable[..., Run],
+        *,
+        steered: bool = False,
     ) -> None:
         self._run, self._steps, self._step, self._shape, self._label = run, steps, step, shape, label
         self._interval = max(1, round(INTERVAL / step))
-        self._steered = False
+        self._steered = steered
         self._placed = run.placed
         self.speed = run.speed
         self.uplift_force: Floats = np.array([placed.uplift for placed in self._placed])
@@ -114,6 +158,16 @@ class Session:
     def time(self) -> float:
         """[s] since the start."""
         return self._step * self._run.done
+
+    @property
+    def duration(self) -> float:
+        """[s] that the session may last."""
+        return self._step * self._steps
+
+    @property
+    def bodies(self) -> list[Substructure]:
+        """What each pantograph is made of: its coordinates are those of heights."""
+        return [placed.body for placed in self._placed]
 
     @property
     def finished(self) -> bool:
@@ -190,6 +244,47 @@ class Session:
             self._run.advance(1, read=(self._run.done + 1) % self._interval == 0)
         return self.contact_force
 
+    def state(self) -> bytes:
+        """All that the next steps depend on, to the last bit, and what was recorded until now.
+
+        For :meth:`restore`, in this session or in another one that began in the same way, also in another
+        process of the same installation. It grows with the steps taken.
+        """
+        known = {
+            "of": self._kind(),
+            "positions": self._positions[:, : self._run.done + 1],
+            "speed": np.array(self.speed),
+            "uplift_force": self.uplift_force,
+            "steered": np.array(self._steered),
+        }
+        stream = BytesIO()
+        np.savez(stream, **self._run.arrays(), **self._run.steered(), **known)  # type: ignore[arg-type]
+        return stream.getvalue()
+
+    def restore(self, state: bytes) -> None:
+        """Go back, or forward, to a state. Raises InputError for what is none, or of another session."""
+        try:
+            with np.load(BytesIO(state), allow_pickle=False) as file:
+                kept = dict(file)
+            of = kept["of"]
+        except (OSError, ValueError, KeyError, EOFError, TypeError, BadZipFile):
+            raise InputError("restore: not a state of a session; give what its state() returned") from None
+        if not np.array_equal(of, self._kind()):
+            raise InputError(
+                "restore: the state of a session with another line, start, time step or duration; begin this"
+                " one in the same way"
+            )
+        self._run.go_on(kept)
+        self._run.steer(kept)
+        self._positions[:, : self._run.done + 1] = kept["positions"]
+        self.speed, self.uplift_force = float(kept["speed"]), kept["uplift_force"]
+        self._steered = bool(kept["steered"])
+
+    def _kind(self) -> Floats:
+        """What two sessions have in common whose states fit each other."""
+        start = [self._run.speed, *(v for p in self._placed for v in (p.position, p.uplift, *p.heights))]
+        return np.array([self._steps, self._step, self._shape.system.size, *start])
+
     def run(self) -> Run:
         """What was computed until now, as :func:`simulate` returns it: statistics, pictures, files.
 
@@ -209,22 +304,14 @@ class Session:
         return self._label(history, steered=self._steered)
 
     def _push(self, uplift_force: ArrayLike) -> None:
-        given = numbers("uplift_force", np.broadcast_to(uplift_force, self.uplift_force.shape).copy())
-        if np.abs(given).max() > STRONGEST:
-            raise InputError(
-                f"uplift_force = {given.tolist()} N: must be within ±{STRONGEST:g} N; look at the unit"
-            )
+        given = _one_each("uplift_force", uplift_force, len(self._placed), STRONGEST, "N")
         if (given != self.uplift_force).any():
             self._steered, self.uplift_force = True, given
             self._run.push(given)
 
     def _lift(self, base_height: ArrayLike) -> None:
-        given = numbers("base_height", np.broadcast_to(base_height, self.uplift_force.shape).copy())
-        if np.abs(given).max() > HIGHEST:
-            raise InputError(
-                f"base_height = {given.tolist()} m: must be within ±{HIGHEST:g} m; look at the unit"
-            )
-        self._refuse_moving_bases("base_height")
+        given = _one_each("base_height", base_height, len(self._placed), HIGHEST, "m")
+        _refuse_moving_bases(self._shape, "base_height")
         self._steered = True
         self._run.move_base(given)
 
@@ -232,16 +319,9 @@ class Session:
         speed = number("speed", speed, "m/s", least=0.0)
         if speed:
             check_speed(speed)
-        self._refuse_moving_bases("speed")
+        _refuse_moving_bases(self._shape, "speed")
         self._steered, self.speed = True, speed
         self._run.drive(speed)
-
-    def _refuse_moving_bases(self, what: str) -> None:
-        if self._shape.system.base_line.motions:
-            raise InputError(
-                f"{what}: the conditions move the bases already, by the speed at the start; leave their base"
-                f" motion out, or {what}"
-            )
 
     def _check_place(self, position: Floats) -> None:
         last = float(self._shape.catenary.length)

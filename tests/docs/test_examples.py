@@ -14,12 +14,17 @@ PAGES = sorted(page for page in DOCS.rglob("*.md") if re.search(r"^```(sh|python
 BLOCK = re.compile(r"^```(sh|toml|python)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
+EXTRAS = {"fmu": ("pythonfmu", "fmpy")}  # what a page cannot do without
+
+
 def test_there_are_examples():
     assert len(PAGES) >= 8
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_page(page, tmp_path):
+    for package in EXTRAS.get(page.stem, ()):
+        pytest.importorskip(package)
     here = Path(sys.executable).parent
     environment = os.environ | {
         "PATH": f"{here}{os.pathsep}{os.environ['PATH']}",

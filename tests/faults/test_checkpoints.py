@@ -53,7 +53,7 @@ def test_a_killed_run_goes_on_with_the_same_bytes(reference_layout, shape, tmp_p
         time.sleep(0.02)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    assert 0 < read(file)["state_10"][0] < 1500  # steps
+    assert 0 < read(file)["state_11"][0] < 1500  # steps
     run = {"speed": 80.0, "store_wire": 0.02}
     head = cf.library.pantograph(HEAD)
     seen = []

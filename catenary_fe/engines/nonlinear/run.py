@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +32,13 @@ from catenary_fe.engines.recorder import (
 from catenary_fe.engines.sections import Computed, sections_met
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.contact import PlacedPantograph, place
+from catenary_fe.fe.contact import EvenCurve, PlacedPantograph, place
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
 from catenary_fe.statics.newton import static_contact
 
 Floats = NDArray[np.float64]
+_STEERED = ("load", "start", "place", "speed", "pace")  # of the heads
 PARTS = (1, 2, 4, 8, 16)  # of a step, where the run does not converge with the matrix at rest
 
 
@@ -57,8 +59,11 @@ class NonlinearEngine:
         self.iterations = 0
         self._notes: list[str] = []
 
-    def begin(self, case: RunCase, uplifts: Floats, steps: int) -> NonlinearRun:
-        """A run of so many steps, in static contact at its start. Raises SolverError where there is none."""
+    def begin(self, case: RunCase, uplifts: Floats, steps: int, bases: Floats | None = None) -> NonlinearRun:
+        """A run of so many steps, in static contact at its start. Raises SolverError where there is none.
+
+        bases : [m], shape (pantographs,), heights of bases that stand elsewhere; unset: none does
+        """
         placed = place(
             case.pantographs,
             uplifts,
@@ -67,8 +72,15 @@ class NonlinearEngine:
             height=self._system.contact_wire_height,
         )
         placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
-        moved, placed = static_contact(self._system, placed)
-        return NonlinearRun(self, moved, placed, case.speed, steps)
+        if bases is None:
+            moved, placed = static_contact(self._system, placed)
+            return NonlinearRun(self, moved, placed, case.speed, steps)
+        curves = [EvenCurve(0.0, 1.0, np.array([[height, 0.0]] * 2)) for height in bases]
+        lifted = [replace(p, base=curve) for p, curve in zip(placed, curves, strict=True)]
+        moved, placed = static_contact(self._system, lifted)
+        run = NonlinearRun(self, moved, [replace(p, base=None) for p in placed], case.speed, steps)
+        run.base_curves()[:, :, 0] = bases[:, None]
+        return run
 
     def run(
         self,
@@ -184,17 +196,21 @@ class NonlinearRun:
 
     def move_base(self, heights: Floats) -> None:
         """Move the bases in the next step to heights [m], shape (pantographs,), above those at rest."""
+        for curve, height in zip(self.base_curves(), heights, strict=True):
+            rate = (height - curve[self.done, 0]) / self._step
+            curve[self.done + 1 :] = height, 0.0
+            curve[self.done + 1, 1] = rate
+
+    def base_curves(self) -> Floats:
+        """[m] and [m/s], shape (pantographs, steps + 1, 2), of the bases, to be changed in place."""
         heads = self.state.heads
         if not heads.base.values.shape[1]:
             values = np.zeros((len(self.placed), self._steps + 1, 2))
             base = heads.base._replace(
                 step=np.full(len(values), self._step), last=np.full(len(values), self._steps), values=values
             )
-            self.state.heads = heads = heads._replace(base=base)
-        for curve, height in zip(heads.base.values, heights, strict=True):
-            rate = (height - curve[self.done, 0]) / self._step
-            curve[self.done + 1 :] = height, 0.0
-            curve[self.done + 1, 1] = rate
+            self.state.heads = heads._replace(base=base)
+        return self.state.heads.base.values
 
     def drive(self, speed: float) -> None:
         """Run on at another speed [m/s] from where the pantographs are; all sections are computed then."""
@@ -230,17 +246,37 @@ class NonlinearRun:
     def take_up(self, checkpoint: Checkpoint | None) -> None:
         """Go on from what a checkpoint kept, if it kept anything."""
         if checkpoint and checkpoint.kept:
-            self.done = self._recorder.go_on(checkpoint.kept)
-            self._computed.steps[:] = checkpoint.kept["computed"]
-            first, end = checkpoint.kept["sections"].tolist()
-            self._leg = Leg.of(self._parameters, (first, end))
-            self._notes = checkpoint.kept["notes"].tolist()
+            self.go_on(checkpoint.kept)
 
-    def arrays(self) -> dict[str, NDArray[np.generic]]:
+    def go_on(self, kept: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from :meth:`arrays`."""
+        self.done = self._recorder.go_on(kept)
+        self._computed.steps[:] = kept["computed"]
+        first, end = kept["sections"].tolist()
+        self._leg = Leg.of(self._parameters, (first, end)) if end > first else None
+        self._notes = kept["notes"].tolist()
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
         """What a run needs to go on from here with the same result."""
-        assert self._leg
-        own = {"computed": self._computed.steps, "sections": np.array(self._leg.sections)}
-        return self._recorder.arrays() | own | {"notes": np.array(self._notes)}
+        sections = self._leg.sections if self._leg else (0, 0)
+        own = {"computed": self._computed.steps, "sections": np.array(sections)}
+        return self._recorder.arrays() | own | {"notes": np.array(self._notes, dtype=np.str_)}
+
+    def steered(self) -> dict[str, NDArray[Any]]:
+        """What :meth:`push`, :meth:`move_base` and :meth:`drive` changed, for :meth:`steer`."""
+        heads = self.state.heads
+        found = {f"steered_{name}": getattr(heads, name) for name in _STEERED}
+        own = {"steered_base": self.base_curves()[:, : self.done + 1], "steered_all": np.array(self._all)}
+        return found | own
+
+    def steer(self, kept: Mapping[str, NDArray[Any]]) -> None:
+        """Go on as :meth:`steered` kept it, after :meth:`go_on`."""
+        for name in _STEERED:
+            getattr(self.state.heads, name)[...] = kept[f"steered_{name}"]
+        curves, before = self.base_curves(), kept["steered_base"]
+        curves[:, : self.done + 1] = before
+        curves[:, self.done + 1 :, 0], curves[:, self.done + 1 :, 1] = before[:, -1:, 0], 0.0
+        self._all = bool(kept["steered_all"])
 
     def history(self) -> History:
         """What was recorded so far."""
