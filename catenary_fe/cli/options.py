@@ -18,6 +18,7 @@ from catenary_fe.layout import (
     DescribedPantograph,
     InputError,
     PowerSystem,
+    counted,
     load_catenary,
     load_conditions,
     load_pantograph,
