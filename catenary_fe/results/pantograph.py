@@ -22,6 +22,7 @@ Complex = NDArray[np.complex128]
 LOWEST, HIGHEST, VALUES = 0.1, 50.0, 400  # [Hz] and number of the frequencies that are usual
 REACH = 0.5  # [m] above and below the base spring's force-free height, of static forces
 _STEPS = 20  # of that range
+_ROUNDS, _SETTLED = 50, 1e-10  # of the search for static forces, [m]
 _STILL = 1e-6  # share of the highest own frequency below which one is that of a body that nothing holds
 
 
@@ -162,13 +163,25 @@ def _receptance(body: Substructure, frequency: Floats) -> Complex:
 
 
 def _static_forces(body: Substructure, uplift: float, heights: Floats) -> Floats:
-    """[N] on a wire that holds the head at heights [m]: K y = uplift · load - force · head, head · y = z."""
+    """[N] on a wire that holds the head at heights [m]: K y = uplift · load - force · head, head · y = z.
+
+    Newton's method, for what is not linear; stops are straight lines, each met once.
+    """
     if not body.size:
         return np.array([body.contact.force(-z) for z in heights])
     n, head = body.size, _head(body)
-    bordered = np.block([[body.stiffness, head[:, None]], [head[None, :], np.zeros((1, 1))]])
-    right = np.vstack([np.outer(uplift * body.load, np.ones(heights.size)), heights])
-    return np.asarray(np.linalg.solve(bordered, right)[n])
+    found = np.zeros(heights.size)
+    for i, z in enumerate(heights):
+        y = np.full(n, z)
+        for _ in range(_ROUNDS):
+            force, tangent, _ = body.static_laws(y)
+            stiffness = body.stiffness + tangent
+            bordered = np.block([[stiffness, head[:, None]], [head[None, :], np.zeros((1, 1))]])
+            solved = np.linalg.solve(bordered, [*(uplift * body.load + tangent @ y - force), z])
+            before, y, found[i] = y, solved[:n], solved[n]
+            if np.abs(y - before).max() < _SETTLED:
+                break
+    return found
 
 
 def _modes(body: Substructure) -> tuple[Floats, Floats]:

@@ -99,6 +99,7 @@ class Session:
         self._placed = run.placed
         self.speed = run.speed
         self.uplift_force: Floats = np.array([placed.uplift for placed in self._placed])
+        self._lifted: Floats = np.zeros(len(self._placed))
         self._positions = np.zeros((len(self._placed), steps + 1))
         self._positions[:, 0] = [placed.position for placed in self._placed]
 
@@ -225,8 +226,9 @@ class Session:
                 f"base_height = {given.tolist()} m: must be within ±{HIGHEST:g} m; look at the unit"
             )
         self._refuse_moving_bases("base_height")
-        self._steered = True
-        self._run.move_base(given)
+        if (given != self._lifted).any():
+            self._steered, self._lifted = True, given
+            self._run.move_base(given)
 
     def _drive(self, speed: float) -> None:
         speed = number("speed", speed, "m/s", least=0.0)
