@@ -81,7 +81,7 @@ def joint_law(mbs: exu.MainSystem, joint: Joint) -> object:
 
 
 def drag_of_laws(body: Substructure, w: Floats, rate: float) -> Floats:
-    """[N], shape (coordinates,): of dampers that differ and friction, at rates of these and the base [m/s]."""
+    """[N], shape (coordinates,): of dampers that differ and friction, at these rates and the base's [m/s]."""
     drag = np.zeros(body.size)
     for law in body.laws:
         row = np.array(law.row)

@@ -185,6 +185,10 @@ class NonlinearRun:
                 step=np.full(len(values), self._step), last=np.full(len(values), self._steps), values=values
             )
             self.state.heads = heads = heads._replace(base=base)
+            for p, placed in enumerate(self.placed):
+                body = placed.body
+                heads.base_stiffness[0, p, : body.size] = body.base_stiffness
+                heads.base_damping[0, p, : body.size] = body.base_damping
         for curve, height in zip(heads.base.values, heights, strict=True):
             rate = (height - curve[self.done, 0]) / self._step
             curve[self.done + 1 :] = height, 0.0
@@ -326,8 +330,8 @@ class NonlinearRun:
         where = place_of_heads(self._parameters.system.support_positions, self._positions(reached))
         return (
             f"run at {3.6 * self.state.heads.pace[0]:g} km/h: no convergence at t = {reached:.4f} s, {where},"
-            f" with steps of {self._step:g} s nor with {PARTS[-1]} in the place of each; try a smaller time step,"
-            " and look at the contact and dropper stiffnesses"
+            f" with steps of {self._step:g} s nor with {PARTS[-1]} in the place of each; try a smaller time"
+            " step, and look at the contact and dropper stiffnesses"
         )
 
 
