@@ -22,7 +22,7 @@ from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import check_speed, plan_run
 from catenary_fe.studies.linearised import MeanForce, aimed
-from catenary_fe.studies.record import make_run
+from catenary_fe.studies.record import as_partial, make_run
 
 Floats = NDArray[np.float64]
 
@@ -194,6 +194,8 @@ class Session:
     def run(self) -> Run:
         """What was computed until now, as :func:`simulate` returns it: statistics, pictures, files.
 
+        Where that is a part of the session, or not all evaluated spans were passed, it is a partial run.
+
         Raises InputError where that is less than 50 steps.
         """
         if self._run.done < FEWEST:
@@ -207,10 +209,20 @@ class Session:
             none = np.array([])
             own = self._positions[:, : history.time.size]
             history = replace(history, position=own, energy=none, lost_work=None)
-        return self._label(history, steered=self._steered)
+        run = self._label(history, steered=self._steered)
+        end = run.data["support_position"].values[max(run.evaluated_spans)]
+        if self.finished and (run.data["position"].values[:, -1] >= end).all():
+            return run
+        return as_partial(run, "a script stepped so far", self._steps * self._step)
+
+    def _of_each(self, name: str, given: ArrayLike) -> Floats:
+        values, shape = numbers(name, given), self.uplift_force.shape
+        if values.shape not in ((), shape):
+            raise InputError(f"{name} has the shape {values.shape}: give one number, or one a pantograph")
+        return np.broadcast_to(values, shape).copy()
 
     def _push(self, uplift_force: ArrayLike) -> None:
-        given = numbers("uplift_force", np.broadcast_to(uplift_force, self.uplift_force.shape).copy())
+        given = self._of_each("uplift_force", uplift_force)
         if np.abs(given).max() > STRONGEST:
             raise InputError(
                 f"uplift_force = {given.tolist()} N: must be within ±{STRONGEST:g} N; look at the unit"
@@ -220,7 +232,7 @@ class Session:
             self._run.push(given)
 
     def _lift(self, base_height: ArrayLike) -> None:
-        given = numbers("base_height", np.broadcast_to(base_height, self.uplift_force.shape).copy())
+        given = self._of_each("base_height", base_height)
         if np.abs(given).max() > HIGHEST:
             raise InputError(
                 f"base_height = {given.tolist()} m: must be within ±{HIGHEST:g} m; look at the unit"

@@ -266,7 +266,7 @@ def test_a_base_that_lifts_a_stop_does_work(short_shape: cf.Shape) -> None:
 
 
 def test_static_force_over_the_height_knows_stops() -> None:
-    """Below the lower stop the head is held by it: its force rises by the stop's stiffness and the springs'."""
+    """Below the lower stop the head is held by it: its force rises by that one's stiffness, too."""
     stage = cf.Stage(**FRAME, travel=(0.1, 0.2), stop_stiffness=5e3)
     head = cf.Pantograph(name="stops", stages=[cf.Stage(**HEAD), stage], uplift_force=120.0)
     found = pantograph_response(head)
