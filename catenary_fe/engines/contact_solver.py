@@ -234,6 +234,16 @@ def base_height(heads: PantographParameters, c: int, p: int, time: float) -> flo
 
 
 @compiled
+def risen_base(heads: PantographParameters, c: int, p: int, time: float) -> float:
+    """[m] that a pantograph's base has risen at a time [s], by what it follows and by what moves it."""
+    risen, base = base_height(heads, c, p, time), c * heads.follows.shape[1] + p
+    if heads.base.last[base] >= 0:
+        height, _ = surface_at(heads.base, base, time)
+        risen += height
+    return float(risen)
+
+
+@compiled
 def free_heads(heads: PantographParameters, pantographs: PantographState, c: int, time: float) -> None:
     """Accelerations of the masses without contact, at a time [s]."""
     count, size = pantographs.x.shape[1], pantographs.x.shape[2]

@@ -248,11 +248,14 @@ class Substructure:
             energy += stored
         return force, tangent, energy
 
-    def energy(self, y: Floats, w: Floats) -> float:
-        """[J] kinetic and stored, at coordinates and their rates, shape (size,) both."""
+    def energy(self, y: Floats, w: Floats, risen: float = 0.0) -> float:
+        """[J] kinetic and stored, at coordinates and their rates, shape (size,) both.
+
+        risen : [m] of the base, which moves stops; springs count as if it had not
+        """
         linear = float((w @ self.mass @ w + y @ self.stiffness @ y) / 2)
         moving = sum(law.kinetic(float(np.dot(law.row, y)), float(np.dot(law.row, w))) for law in self.laws)
-        return linear + moving + self.static_laws(y)[2]
+        return linear + moving + self.static_laws(y, risen)[2]
 
     @cached_property
     def rolling(self) -> tuple[int, ...]:

@@ -273,11 +273,14 @@ def kept_when_stopped(label: Callable[[History], Run], planned: float) -> Iterat
         cause = stopped.cause
         error = cause if isinstance(cause, SolverError | RunInterrupted) else RunInterrupted()
         if stopped.history is not None:
-            run = label(stopped.history)
-            reached = float(run.time[-1])
-            title = f"PARTIAL, {reached:.2f} of {planned:.2f} s: {run.data.attrs['title']}"  # heads pictures
             reason = str(cause) if isinstance(cause, SolverError) else "interrupted"
-            record = {"reason": reason, "reached_s": reached, "planned_s": planned}
-            partial = run.data.assign_attrs(title=title, partial=json.dumps(record))
-            error.partial = Run(partial, run.wall_s)
+            error.partial = as_partial(label(stopped.history), reason, planned)
         raise error from None
+
+
+def as_partial(run: Run, reason: str, planned: float) -> Run:
+    """The same run, said to be a part of one that should have taken so long [s]."""
+    reached = float(run.time[-1])
+    title = f"PARTIAL, {reached:.2f} of {planned:.2f} s: {run.data.attrs['title']}"  # heads pictures
+    record = {"reason": reason, "reached_s": reached, "planned_s": planned}
+    return Run(run.data.assign_attrs(title=title, partial=json.dumps(record)), run.wall_s)

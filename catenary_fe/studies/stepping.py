@@ -25,7 +25,7 @@ from catenary_fe.results import Run
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import check_speed, plan_run
 from catenary_fe.studies.linearised import MeanForce, aimed
-from catenary_fe.studies.record import make_run
+from catenary_fe.studies.record import as_partial, make_run
 
 Floats = NDArray[np.float64]
 
@@ -288,6 +288,8 @@ class Session:
     def run(self) -> Run:
         """What was computed until now, as :func:`simulate` returns it: statistics, pictures, files.
 
+        Where that is a part of the session, or not all evaluated spans were passed, it is a partial run.
+
         Raises InputError where that is less than 50 steps.
         """
         if self._run.done < FEWEST:
@@ -301,7 +303,11 @@ class Session:
             none = np.array([])
             own = self._positions[:, : history.time.size]
             history = replace(history, position=own, energy=none, lost_work=None)
-        return self._label(history, steered=self._steered)
+        run = self._label(history, steered=self._steered)
+        end = run.data["support_position"].values[max(run.evaluated_spans)]
+        if self.finished and (run.data["position"].values[:, -1] >= end).all():
+            return run
+        return as_partial(run, "a script stepped so far", self._steps * self._step)
 
     def _push(self, uplift_force: ArrayLike) -> None:
         given = _one_each("uplift_force", uplift_force, len(self._placed), STRONGEST, "N")
@@ -312,8 +318,9 @@ class Session:
     def _lift(self, base_height: ArrayLike) -> None:
         given = _one_each("base_height", base_height, len(self._placed), HIGHEST, "m")
         _refuse_moving_bases(self._shape, "base_height")
-        self._steered = True
-        self._run.move_base(given)
+        if (given != self._run.base_curves()[:, self._run.done, 0]).any():
+            self._steered = True
+            self._run.move_base(given)
 
     def _drive(self, speed: float) -> None:
         speed = number("speed", speed, "m/s", least=0.0)

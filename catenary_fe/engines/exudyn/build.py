@@ -175,6 +175,9 @@ class ExudynModel:
                 force -= (body.mechanism.lifted + body.mechanism.carried) * body.load
             for load, coordinate in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", float(force[coordinate]))
+            for law in parts.grounded:
+                self.mbs.SetObjectParameter(law, "stiffness", risen + height)
+                self.mbs.SetObjectParameter(law, "damping", rate)
             for contact in parts.contacts:
                 if contact.strip is not None and contact.strip.body is None:
                     above = self.system.contact_wire_height + risen + height

@@ -67,6 +67,7 @@ class PantographParts:
     substructure : what was assembled; of attached bodies, none
     bodies : objects; those that carry strips first
     joints : objects, springs and dampers between bodies, or a body and the base
+    grounded : objects, what is not linear between a body and the base, whose height and rate they hold
     coordinates : node, and which of its coordinates, of each of the substructure's coordinates
     loads : and which of the substructure's coordinates each acts on: of the uplift, and of a base that rises
     strips : position markers on the middles of the collector strips
@@ -79,6 +80,7 @@ class PantographParts:
     substructure: Substructure | None
     bodies: list[int]
     joints: list[int]
+    grounded: list[int]
     coordinates: list[tuple[int, int]]
     loads: list[tuple[int, int]]
     strips: list[int]
@@ -124,6 +126,7 @@ def add_pantograph(
         (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=on[at], load=0.0))), int(at))
         for at in np.flatnonzero(assembled.load + assembled.base_stiffness + assembled.base_damping)
     ]
+    joints, grounded = _add_joints(mbs, assembled, on, ground)
     middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
     strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]
     law = _Law(mbs, axes - 1, assembled.contact)
@@ -137,7 +140,8 @@ def add_pantograph(
         record=pantograph,
         substructure=assembled,
         bodies=bodies,
-        joints=_add_joints(mbs, assembled, on, ground),
+        joints=joints,
+        grounded=grounded,
         coordinates=coordinates,
         loads=loads,
         strips=strips,
@@ -167,7 +171,7 @@ def add_own_pantograph(
         for wire in range(len(wires))
     ]
     markers = [int(marker) for marker, _ in strips]
-    return PantographParts(record, None, [], [], [], [], markers, contacts, [int(m) for m in masses])
+    return PantographParts(record, None, [], [], [], [], [], markers, contacts, [int(m) for m in masses])
 
 
 def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, up: int, ground: int) -> tuple[int, int]:
@@ -200,9 +204,14 @@ def _strip_marker(mbs: exu.MainSystem, bodies: list[int], strip: Strip, nominal:
     return int(mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=node)))
 
 
-def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], ground: int) -> list[int]:
-    """Springs and dampers between heights, and of bodies that roll against the level, on their lever."""
-    found = []
+def _add_joints(
+    mbs: exu.MainSystem, assembled: Substructure, on: list[int], ground: int
+) -> tuple[list[int], list[int]]:
+    """Springs and dampers between heights, and of bodies that roll against the level, on their lever.
+
+    Beside them what is not linear in a joint; returns both, of the latter those to the base.
+    """
+    found, grounded = [], []
     own = assembled.mechanism is not None
     for joint in assembled.joints:
         if own and joint.lower == BASE and assembled.frame and assembled.frame.row[joint.upper]:
@@ -218,10 +227,13 @@ def _add_joints(mbs: exu.MainSystem, assembled: Substructure, on: list[int], gro
                 stiffness=joint.stiffness * factor,
                 damping=joint.damping * factor,
             )
-            if factor == 1.0 and joint.laws:
-                spring.springForceUserFunction = joint_law(mbs, joint)
             found.append(int(mbs.AddObject(spring)))
-    return found
+        if joint.laws:
+            beside = eii.ObjectConnectorCoordinateSpringDamper(markerNumbers=[on[joint.upper], lower])
+            beside.springForceUserFunction = joint_law(mbs, joint)
+            number = int(mbs.AddObject(beside))
+            grounded += [number] if joint.lower == BASE else []
+    return found, grounded
 
 
 class _Law:

@@ -10,8 +10,11 @@ from typing import Any
 
 import exudyn as exu
 import numpy as np
+from numpy.typing import NDArray
 
-from catenary_fe.layout.substructure import DAMPER, STOP, ContactLaw, Joint
+from catenary_fe.layout.substructure import DAMPER, FRICTION, STOP, ContactLaw, Joint, Substructure
+
+Floats = NDArray[np.float64]
 
 SLIDES = 1e-3  # [m/s] from which on dry friction has its full force in Exudyn's runs
 
@@ -54,28 +57,40 @@ def push_only(mbs: exu.MainSystem, up: int, contact: ContactLaw) -> object:
 
 
 def joint_law(mbs: exu.MainSystem, joint: Joint) -> object:
-    """The law of a pantograph's joint with stops, a damper that differs, or dry friction.
+    """What a pantograph's joint has beside spring and damper: stops, a damper that differs, dry friction.
 
     Friction grows with the velocity up to ``SLIDES``, where it has its full force: Newton's method knows no
-    standstill. The connector's displacement is the lower end's above the upper one's.
+    standstill. The connector's displacement is the lower end's above the upper one's. Its stiffness and
+    damping, which have no use here, hold by how much and how fast the base moves up.
     """
     zero = exu.symbolic.Real(0.0)
 
     def pull(mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset):  # type: ignore[no-untyped-def]
-        force = stiffness * displacement + damping * velocity
+        shorter, rate, force = displacement + stiffness, velocity + damping, zero
         for kind, sign, values in joint.laws:
             if kind == STOP:
-                force = force - sign * values[1] * exu.symbolic.max(zero, -sign * displacement - values[0])
+                force = force - sign * values[1] * exu.symbolic.max(zero, -sign * shorter - values[0])
             elif kind == DAMPER:
-                force = force - sign * values[0] * exu.symbolic.max(zero, -sign * velocity)
+                force = force - sign * values[0] * exu.symbolic.max(zero, -sign * rate)
             else:
                 most = exu.symbolic.Real(values[0])
-                force = force + exu.symbolic.max(
-                    -most, exu.symbolic.min(most, velocity * (values[0] / SLIDES))
-                )
+                force = force + exu.symbolic.max(-most, exu.symbolic.min(most, rate * (values[0] / SLIDES)))
         return force
 
     return _in_cpp(mbs, pull, "ObjectConnectorCoordinateSpringDamper", f"joint {joint.laws}")
+
+
+def drag_of_laws(body: Substructure, w: Floats, rate: float) -> Floats:
+    """[N], shape (coordinates,): of dampers that differ and friction, at these rates and the base's [m/s]."""
+    drag = np.zeros(body.size)
+    for law in body.laws:
+        row = np.array(law.row)
+        moved = np.array(row @ w + law.to_base * rate)
+        if law.kind == DAMPER:
+            drag += float(law.push(moved, moved)) * row
+        elif law.kind == FRICTION:
+            drag += law.values[0] * float(np.clip(moved / SLIDES, -1.0, 1.0)) * row
+    return drag
 
 
 def _damped(spring: Any, damper: Any) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
 from dataclasses import replace
 
 import exudyn as exu
@@ -12,13 +11,14 @@ from numpy.typing import NDArray
 
 from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.exudyn.balance import Bases, EnergyBalance, base_motion
 from catenary_fe.engines.exudyn.build import ExudynModel, exudyn_model
 from catenary_fe.engines.exudyn.solver import solve_dynamic, solve_static
 from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_steps
 from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.contact import EvenCurve, place
+from catenary_fe.fe.contact import place
 from catenary_fe.layout import SolverError
 from catenary_fe.statics import Shape
 from catenary_fe.statics.newton import static_contact
@@ -30,8 +30,6 @@ _ALONG = exu.OutputVariableType.ForceLocal  # of a dropper
 _BOTH = exu.ConfigurationType.Initial, exu.ConfigurationType.Current
 
 _log = logging.getLogger(__name__)
-
-Bases = Sequence[EvenCurve | None]
 
 
 class ExudynEngine:
@@ -124,11 +122,6 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
         solve_static(mbs, what="static contact at the start", name=model.name)
 
 
-def _now(bases: Bases, time: float) -> list[tuple[float, float]]:
-    """Heights [m] and rates [m/s] of bases that move."""
-    return [base.at(time) if base else (0.0, 0.0) for base in bases]
-
-
 def _set_state(model: ExudynModel, q: Floats, v: Floats) -> None:
     """Make these coordinates and velocities the initial and the current ones."""
     data = model.mbs.systemData
@@ -162,7 +155,7 @@ def _integrate(
                 recorder.record((count - 1) // parts)
             model.load_at(end)
             if model.system.base_line.varies or model.system.base_line.motions:
-                model.lift(uplifts, case.start + case.speed * end, _now(bases, end))
+                model.lift(uplifts, case.start + case.speed * end, base_motion(bases, end))
             contacts.move_to(case.start + case.speed * end, case.speed)
             if progress and count % (50 * parts) == 0:
                 progress(count / parts / steps)
@@ -210,7 +203,7 @@ class _Recorder:
         self._support_index = np.concatenate([path.index[path.supports, 0] for path in paths])
         self._support = np.zeros((self._support_index.size, n))
         self._wire: list[Floats] = []
-        self._balance = _EnergyBalance(model, uplifts, bases, steps, every[1]) if every[1] else None
+        self._balance = EnergyBalance(model, uplifts, bases, steps, every[1]) if every[1] else None
         self._tension = TensionRecord(TensionGauge(system))
         self._tension_every = max(1, round(INTERVAL / time.step))
         self._notes: dict[float, int] = {}
@@ -245,8 +238,9 @@ class _Recorder:
         if n % self._tension_every == 0:
             self._tension.read(self._step * n, q)
         if self._balance:
-            driving = self._balance.driving(self._step * n, q.size, self._positions(n), forces)
-            self._balance.record(n, q, v, driving, self._dropper[:, n])
+            driving = self._balance.driving(self._step * n, q, self._positions(n), forces)
+            drag = self._balance.drag(self._step * n, v)
+            self._balance.record(n, (q, v), driving, drag, self._dropper[:, n])
         self.done = n
 
     def note_smaller_steps(self, parts: int) -> None:
@@ -305,99 +299,3 @@ class _Recorder:
     def _note(self, at: float, parts: int) -> str:
         supports, positions = self._model.system.support_positions, self._case.start + self._case.speed * at
         return smaller_steps(supports, positions, at, parts, 1e3 * STRETCH * self._step)
-
-
-class _EnergyBalance:
-    """Energy, work of contacts and loads in time, and loss in the dampers, step by step.
-
-    Kinetic and stored energy are those of line and pantographs; the potential of constant forces (weight,
-    tensions, preloads, uplift) counts as stored. Work and loss of a step are those of the trapezoidal rule:
-    the mean of a force at the step's two ends along the displacement between them. A contact's work on wire
-    and head is not zero: what it does not store or damp comes from the moving base, which drives the force
-    over the wire's inclination.
-
-    every : steps between readings of the energy
-    """
-
-    def __init__(self, model: ExudynModel, uplifts: Floats, bases: Bases, steps: int, every: int) -> None:
-        self._bases = bases
-        self.every, self._model, self._contacts = every, model, model.contacts
-        self._damping, self._droppers = model.system.damping(), model.system.droppers
-        self._line = model.system.dof.size
-        self._bodies = [
-            (parts, parts.substructure, parts.index(model.mbs), float(uplift))
-            for parts, uplift in zip(model.pantographs, uplifts, strict=True)
-            if parts.substructure
-        ]
-        self.work, self.loss = np.zeros(steps + 1), np.zeros(steps + 1)
-        self._energy: list[float] = []
-        self._before: tuple[Floats, ...] | None = None
-
-    @property
-    def energy(self) -> Floats:
-        """[J], shape (readings,)."""
-        return np.array(self._energy)
-
-    def record(
-        self,
-        n: int,
-        q: Floats,
-        v: Floats,
-        driving: Floats,
-        droppers: Floats,
-    ) -> None:
-        """Take down step ``n``'s end.
-
-        driving : [N], shape (coordinates,), forces whose work is counted
-        droppers : [N], shape (droppers,), tensions
-        """
-        span = self._droppers.span(self._model.system.reference + q[: self._line])
-        drag, length = droppers - self._droppers.tension(span), np.linalg.norm(span, axis=1)
-        now = (q, driving, self._drag(v), drag, length)
-        if self._before is not None:
-            before = self._before
-            moved = q - before[0]
-            self.work[n] = self.work[n - 1] + (before[1] + now[1]) @ moved / 2
-            lost = (before[2] + now[2]) @ moved + (before[3] + now[3]) @ (now[4] - before[4])
-            self.loss[n] = self.loss[n - 1] + lost / 2
-        self._before = now
-        if n % self.every == 0:
-            self._energy.append(self._energy_of(q, v))
-
-    def driving(self, time: float, size: int, positions: Floats, forces: list[list[float]]) -> Floats:
-        """[N], shape (coordinates,): generalised forces of the contacts, and loads that vary in time [s].
-
-        positions : [m] of the pantographs
-        forces : [N] of each pantograph's contacts
-        """
-        found, paths = np.zeros(size), self._model.system.contact_paths
-        found[: self._line] = self._model.system.varying(time)
-        moved = _now(self._bases, time)
-        for i, (parts, body, index, _) in enumerate(self._bodies):
-            risen = self._model.system.base_line.under(body, float(positions[i]))
-            found[index] += risen * body.base_load
-            found[index] += moved[i][0] * body.base_stiffness + moved[i][1] * body.base_damping
-            for contact, force in zip(parts.contacts, forces[i], strict=True):
-                path = paths[contact.wire]
-                e, weights = path.at(float(positions[i]) + contact.ahead)
-                found[path.index[e : e + 2].ravel()] += force * weights
-                if contact.strip:
-                    found[index] -= force * body.row(contact.strip, self._contacts.lateral(contact))
-        return found
-
-    def _drag(self, v: Floats) -> Floats:
-        """[N], shape (coordinates,), of all linear dampers: of droppers' and contacts', none."""
-        drag = np.zeros(v.size)
-        drag[: self._line] = self._damping @ v[: self._line]
-        for _, body, index, _ in self._bodies:
-            drag[index] = body.damping @ v[index]
-        return drag
-
-    def _energy_of(self, q: Floats, v: Floats) -> float:
-        """[J] above an arbitrary zero."""
-        system, moving = self._model.system, v[: self._line]
-        total = system.energy(q[: self._line]) + float(moving @ (system.mass @ moving) / 2)
-        for _, body, index, uplift in self._bodies:
-            y, w = q[index], v[index]
-            total += body.energy(y, w) - uplift * float(body.load @ y)
-        return total

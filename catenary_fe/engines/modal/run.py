@@ -47,7 +47,8 @@ def modal_run(
     A pantograph's ``mean_force`` is taken as its uplift, which is said in the log.
 
     Raises InputError where the run does not fit on the line, no mode is left, the modes are of another line
-    or mesh, the contact has a damper, or line or head have more than one point of contact.
+    or mesh, the contact has a damper, the pantograph is not linear, or line or head have more than one point
+    of contact.
     """
     number("speed", speed, "m/s", above=0.0)  # no upper bound: studies go beyond the wave speed
     _check_fit(shape, modes, step)
@@ -209,6 +210,11 @@ def _head(pantograph: AnyPantograph, speed: float, step: float) -> _Head:
         raise InputError(
             f"{pantograph.name}: head.strips = 2: a modal run has one point of contact; leave the head out,"
             " or use simulate"
+        )
+    if body.laws:
+        raise InputError(
+            f"{pantograph.name}: stops, dry friction, dampers that differ up and down and frames that are not"
+            " linear are not in a modal run; leave them out, or use simulate"
         )
     if pantograph.target_mean_force(speed) is not None:
         _log.warning(

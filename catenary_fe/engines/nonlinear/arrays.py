@@ -112,7 +112,7 @@ class EnergyBalance(NamedTuple):
     q, drag : [m], [N], shape (free,), displacements and the wires' own damping
     heads, head_drag : [m], [N], shape (pantographs, coordinates), likewise
     force, shape, at, head : as in ``Work`` of one slot, where the contacts were; none at the start
-    law_force : [N], shape (laws,), of the pantographs' laws that lose energy
+    law_force : [N], shape (laws,), of the pantographs' laws a step ago, of frames without inertia
     damper, span : [N], [m], shape (droppers,), the dampers' part of their forces, and lengths
     new_damper, new_span : likewise at the end of the step that is iterated
     history : [J], shape (2, steps + 1), ``work`` at all steps

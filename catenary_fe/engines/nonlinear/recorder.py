@@ -57,8 +57,16 @@ class EnergyRecord:
             body, m = placed.body, placed.body.size
             x: Floats = own.x[0, p, :m]
             y, w = own.q[0, p, :m] + scheme.b * x, own.v[0, p, :m] + scheme.g * x
-            total += body.energy(y, w) - placed.uplift * float(body.load @ y)
+            total += body.energy(y, w, self._risen(state, scheme, p)) - placed.uplift * float(body.load @ y)
         self._values.append(total)
+
+    def _risen(self, state: State, scheme: Scheme, p: int) -> float:
+        """[m] of a pantograph's base now, by what it follows and by what moves it."""
+        heads, step = state.heads, int(state.pantographs.step[0])
+        position = float(heads.place[0, p] + heads.pace[0] * scheme.h * step)
+        moved = heads.base.values[p, step, 0] if heads.base.last[p] >= 0 else 0.0
+        line, body = self._parameters.system.base_line, self._pantographs[p].body
+        return line.under(body, position) + float(moved)
 
 
 @dataclass

@@ -337,7 +337,8 @@ class NonlinearRun:
         return self._leg
 
     def _positions(self, time: float) -> list[float]:
-        return [placed.position + self._start.speed * time for placed in self._start.pantographs]
+        heads = self.state.heads
+        return [float(place + heads.pace[0] * time) for place in heads.place[0, : len(self.placed)]]
 
     def _note(self, parts: int, steps: int) -> None:
         """Remember for the result that steps were divided."""
@@ -366,9 +367,9 @@ class NonlinearRun:
         reached = self._step * int(self.state.pantographs.step[0])
         where = place_of_heads(self._parameters.system.support_positions, self._positions(reached))
         return (
-            f"run at {3.6 * self._start.speed:g} km/h: no convergence at t = {reached:.4f} s, {where}, with"
-            f" steps of {self._step:g} s nor with {PARTS[-1]} in the place of each; try a smaller time step,"
-            " and look at the contact and dropper stiffnesses"
+            f"run at {3.6 * self.state.heads.pace[0]:g} km/h: no convergence at t = {reached:.4f} s, {where},"
+            f" with steps of {self._step:g} s nor with {PARTS[-1]} in the place of each; try a smaller time"
+            " step, and look at the contact and dropper stiffnesses"
         )
 
 

@@ -16,20 +16,19 @@ from catenary_fe.engines.contact_solver import (
     SWEEPS,
     TOLERANCE,
     advance_heads,
-    base_height,
     free_heads,
     lateral_place,
     place_base,
     place_head,
-    surface_at,
     update_contact,
     weigh_contact,
 )
 from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.kernels import add_loads, take_one
-from catenary_fe.engines.nonlinear import arrays, cables, forces
+from catenary_fe.engines.nonlinear import arrays, cables, energies, forces
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
 from catenary_fe.engines.nonlinear.cables import take_cables
+from catenary_fe.engines.nonlinear.energies import add_energy
 from catenary_fe.engines.nonlinear.forces import (
     local_compliance,
     solve,
@@ -38,7 +37,6 @@ from catenary_fe.engines.nonlinear.forces import (
     woodbury_update,
 )
 from catenary_fe.engines.pantograph_laws import begin_laws, update_laws
-from catenary_fe.layout.substructure import DAMPER, FRICTION
 
 ITERATIONS = 20
 FLOOR = 1e-8  # [m] motion in a step below which a run is at rest
@@ -195,136 +193,6 @@ def _record(
                 to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
 
 
-@compiled
-def _add_energy(
-    system: Equations,
-    scheme: Scheme,
-    wires: Wires,
-    motion: Motion,
-    heads: PantographParameters,
-    pantographs: PantographState,
-    work: Work,
-    energy: EnergyBalance,
-    time: float,
-) -> None:
-    """Add what contacts did and dampers took in this step, or part of one."""
-    moved, drag, lost = motion.before, motion.residual, 0.0
-    for i in range(moved.size):
-        q = wires.q[i, 0] + scheme.b * wires.x[i, 0]
-        moved[i], energy.q[i] = q - energy.q[i], q
-        motion.v[i] = wires.v[i, 0] + scheme.g * wires.x[i, 0]
-    drag[:] = 0.0
-    take_one(system.damping, motion.v, drag)  # its negative
-    for i in range(moved.size):
-        lost += (energy.drag[i] - drag[i]) * moved[i] / 2
-        energy.drag[i] = -drag[i]
-    for i in range(energy.span.size):
-        stretch = energy.new_span[i] - energy.span[i]
-        lost += (energy.damper[i] + energy.new_damper[i]) * stretch / 2
-        energy.damper[i], energy.span[i] = energy.new_damper[i], energy.new_span[i]
-    energy.work[0] += _contact_work(scheme, heads, pantographs, work, energy, moved)
-    energy.work[0] += _base_work(scheme, heads, pantographs, energy, time)
-    energy.work[1] += lost + _law_losses(scheme, heads, pantographs, work, energy)
-    energy.work[1] += _head_losses(scheme, heads, pantographs, energy)
-
-
-@compiled
-def _contact_work(
-    scheme: Scheme,
-    heads: PantographParameters,
-    pantographs: PantographState,
-    work: Work,
-    energy: EnergyBalance,
-    moved: Floats,
-) -> float:
-    """Work of the contacts on wires and masses [J]."""
-    driven = 0.0
-    for j in range(heads.owner.shape[1]):
-        p = heads.owner[0, j]
-        if p < 0:
-            continue
-        before, now = 0.0, 0.0
-        for m in range(4):
-            if energy.at[j, m] >= 0:
-                before += energy.shape[j, m] * moved[energy.at[j, m]]
-            if work.at[0, j, m] >= 0:
-                now += work.shape[0, j, m] * moved[work.at[0, j, m]]
-            energy.at[j, m], energy.shape[j, m] = work.at[0, j, m], work.shape[0, j, m]
-        for s in range(pantographs.x.shape[2]):
-            rise = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s] - energy.heads[p, s]
-            before -= energy.head[j, s] * rise
-            now -= work.head[0, j, s] * rise
-            energy.head[j, s] = work.head[0, j, s]
-        driven += (energy.force[j] * before + work.force[0, j] * now) / 2
-        energy.force[j] = work.force[0, j]
-    return driven
-
-
-@compiled
-def _base_work(
-    scheme: Scheme,
-    heads: PantographParameters,
-    pantographs: PantographState,
-    energy: EnergyBalance,
-    time: float,
-) -> float:
-    """Work of the bases on the masses in the step that ends at a time, as forces on fixed springs [J]."""
-    driven = 0.0
-    for p in range(pantographs.x.shape[1]):
-        risen = (base_height(heads, 0, p, time - scheme.h) + base_height(heads, 0, p, time)) / 2
-        if risen != 0.0:
-            for s in range(pantographs.x.shape[2]):
-                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
-                driven += risen * heads.base_load[0, p, s] * (place - energy.heads[p, s])
-        if heads.base.last[p] >= 0:
-            before, early = surface_at(heads.base, p, time - scheme.h)
-            now, late = surface_at(heads.base, p, time)
-            for s in range(pantographs.x.shape[2]):
-                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
-                force = heads.base_stiffness[0, p, s] * (before + now) / 2
-                force += heads.base_damping[0, p, s] * (early + late) / 2
-                driven += force * (place - energy.heads[p, s])
-    return driven
-
-
-@compiled
-def _law_losses(
-    scheme: Scheme,
-    heads: PantographParameters,
-    pantographs: PantographState,
-    work: Work,
-    energy: EnergyBalance,
-) -> float:
-    """What dry friction and dampers that differ took in the pantographs [J]."""
-    lost = 0.0
-    for n in range(heads.laws.kind.shape[1]):
-        if heads.laws.kind[0, n] == DAMPER or heads.laws.kind[0, n] == FRICTION:
-            p, moved = heads.laws.owner[0, n], 0.0
-            for s in range(pantographs.x.shape[2]):
-                place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
-                moved += heads.laws.row[0, n, s] * (place - energy.heads[p, s])
-            lost += (energy.law_force[n] + work.law_force[0, n]) * moved / 2
-            energy.law_force[n] = work.law_force[0, n]
-    return lost
-
-
-@compiled
-def _head_losses(
-    scheme: Scheme, heads: PantographParameters, pantographs: PantographState, energy: EnergyBalance
-) -> float:
-    """What the pantographs' dampers took [J]."""
-    lost = 0.0
-    for p in range(pantographs.x.shape[1]):
-        for s in range(pantographs.x.shape[2]):
-            drag = 0.0
-            for r in range(pantographs.x.shape[2]):
-                drag += heads.D[0, p, s, r] * (pantographs.v[0, p, r] + scheme.g * pantographs.x[0, p, r])
-            place = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
-            lost += (energy.head_drag[p, s] + drag) * (place - energy.heads[p, s]) / 2
-            energy.heads[p, s], energy.head_drag[p, s] = place, drag
-    return lost
-
-
 def _loop(sources: str) -> Any:
     """Steps; ``sources`` is the stamp of all that they call."""
     # longer than others: the arrays of a run are arguments, as compiled code knows no objects
@@ -386,7 +254,7 @@ def _loop(sources: str) -> Any:
                     break
             if not converged:
                 return False, iterations
-            _add_energy(system, scheme, wires, motion, heads, pantographs, work, energy, scheme.h * (n + 1))
+            add_energy(system, scheme, wires, motion, heads, pantographs, work, energy, scheme.h * (n + 1))
             if signals.shape[0] > 0:
                 residual[:] = 0.0
                 add_loads(system.patterns, (signals[:, n - begin] + signals[:, n + 1 - begin]) / 2, residual)
@@ -401,5 +269,15 @@ def _loop(sources: str) -> Any:
 
 
 advance = _loop(
-    stamp(shared_arrays, generalized_alpha, contact_solver, pantograph_laws, kernels, arrays, cables, forces)
+    stamp(
+        shared_arrays,
+        generalized_alpha,
+        contact_solver,
+        pantograph_laws,
+        kernels,
+        arrays,
+        cables,
+        energies,
+        forces,
+    )
 )
