@@ -19,7 +19,7 @@ from catenary_fe.engines.history import History, RunStopped, of_contacts, sectio
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
 from catenary_fe.fe.contact import place
-from catenary_fe.layout import SolverError
+from catenary_fe.layout import InputError, SolverError
 from catenary_fe.statics import Shape
 from catenary_fe.statics.newton import static_contact
 
@@ -95,6 +95,11 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
     mbs.Assemble()
     own = [parts for parts in model.pantographs if parts.substructure]
     known = len(own)  # attached ones come last
+    if any(bases) and (barred := [parts.record.name for parts in own if parts.frame]):
+        raise InputError(
+            f"conditions: base moves, and in the multibody model the bars of {barred[0]} stand on"
+            " fixed joints; take the method nonlinear, or leave base out"
+        )
     q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if own:
         records = case.pantographs[:known]
