@@ -72,6 +72,11 @@ def _print(response: PantographResponse) -> None:
     given = response.pantograph
     rows = [
         *given.in_words(),
+        *(
+            [("own frequencies, receptance", "of the linear part: no stops, no friction, the smaller damper")]
+            if given.assemble(spatial=False).laws
+            else []
+        ),
         ("static uplift", f"{response.uplift:.4g} N"),
         *(
             (f"static force at {z:+g} m", f"{np.interp(z, response.height, response.force):.4g} N")

@@ -114,6 +114,18 @@ def _law_forces(body: Substructure, heights: Floats, base: tuple[Floats, Floats]
     return forces
 
 
+def met_stops(run: Run, number: int, pantograph: AnyPantograph) -> float:
+    """[Hz], the highest, of a pantograph's masses on stops that they met in a run; 0 where they met none."""
+    body, heights, risen = _motion(run, number, pantograph)
+    highest = 0.0
+    for law in body.laws:
+        row = np.array(law.row)
+        if law.kind == STOP and (row @ heights + law.to_base * risen).max() > law.values[0]:
+            own = law.values[1] * float(row @ np.linalg.solve(body.mass, row))
+            highest = max(highest, float(np.sqrt(own)) / (2 * np.pi))
+    return highest
+
+
 def pantograph_energy(run: Run) -> Iterator[Check]:
     """Uplift, contact force and base work on the masses; springs store it, dampers take it, masses keep it.
 

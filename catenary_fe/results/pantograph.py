@@ -99,7 +99,9 @@ def pantograph_response(
 ) -> PantographResponse:
     """Own frequencies, receptance and static force of a pantograph on a base at rest, without the wire.
 
-    They are closed forms of its masses, springs and dampers. Two strips are pressed down together.
+    They are closed forms of its masses, springs and dampers. Two strips are pressed down together. Of what is
+    not linear, stops are in the static force; own frequencies and receptance are without it, with the smaller
+    of two dampers.
 
     frequencies : [Hz], of the receptance, above 0; unset: 400 from 0.1 to 50 Hz
     speed : [m/s], at which the uplift force is

@@ -21,6 +21,7 @@ from catenary_fe.results.balances import (
     energy_balance,
     force_balance,
     lumped,
+    met_stops,
     name_of,
     pantograph_energy,
     worst,
@@ -186,11 +187,12 @@ def _steps_per_element(run: Run) -> Iterator[Check]:
 
 
 def _steps_per_period(run: Run) -> Iterator[Check]:
-    """Of the highest frequency excited that matters: the filter's, or the head's on its contact spring."""
+    """Of the highest frequency excited that matters: of the filter, head on contact spring, or stop met."""
     found = [(CUT_OFF, "the filter's cut-off")]
     for i, p in lumped(run):
         resonance = sqrt(_contact_stiffness(p) / p.masses[0]) / (2 * pi)
         found.append((resonance, f"the resonance of the head of {name_of(run, i)} on its contact spring"))
+        found.append((met_stops(run, i, p), f"the resonance of {name_of(run, i)} on a stop that it met"))
     highest, what = max(found)
     text = (
         f"in a period of {highest:.1f} Hz, {what}; take a time step of at most"

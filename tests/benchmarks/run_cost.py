@@ -52,6 +52,8 @@ def main() -> None:
     run = rows[-1][1]
     print(f"{'form finding and statics':44s} {rows[0][1] + rows[1][1]:8.3f} s")
     print(f"{'real-time factor of the run':44s} {SECONDS / run:8.2f}")
+    stepped = _stepped(shape, heads, steps)
+    print(f"{'step by step, as a script does, over that':44s} {stepped / run:8.2f}")
     print(f"{'iterations a step':44s} {line.iterations / steps:8.2f}")
     for name, value in _parts(line):
         share = 1e-6 * value * line.iterations / (run - rows[-2][1])
@@ -66,6 +68,15 @@ def _timed(rows: list[tuple[str, float]], name: str, what: Callable) -> object:
     result = what()
     rows.append((name, time.perf_counter() - begin))
     return result
+
+
+def _stepped(shape: cf.Shape, heads: list[cf.Pantograph], steps: int) -> float:
+    """[s] of the same run, step by step, without the start."""
+    session = cf.stepping(shape, heads, speed=SPEED, positions=START, duration=SECONDS)
+    begin = time.perf_counter()
+    for _ in range(steps):
+        session.step(uplift_force=120.0)
+    return time.perf_counter() - begin
 
 
 def _parts(line: NonlinearEngine) -> list[tuple[str, float]]:

@@ -43,6 +43,7 @@ def given(short, short_shape, short_run, pantograph):
     return SimpleNamespace(
         line=short, shape=short_shape, run=short_run, head=pantograph, modes=modes, ran=ran,
         wire=cf.WireProblem(wire=WIRE, x=NODES),
+        session=cf.stepping(short_shape, [pantograph], speed=50.0),
     )  # fmt: skip
 
 
@@ -52,6 +53,14 @@ def equal(name):
 
 def simulated(name):
     return lambda g, bad: cf.simulate(g.shape, [g.head], **({"speed": 50.0} | {name: bad}))
+
+
+def stepped(name):
+    return lambda g, bad: cf.stepping(g.shape, [g.head], **({"speed": 50.0} | {name: bad}))
+
+
+def step(name):
+    return lambda g, bad: g.session.step(**{name: bad})
 
 
 def modal(name):
@@ -154,6 +163,17 @@ CALLS = {
     "simulate: energy": (simulated("energy"), ("x", 1, None, [], ARRAY)),
     "simulate: checkpoint": (simulated("checkpoint"), (3, [], THING, b"x")),
     "simulate: model": (simulated("model"), OBJECT[:2]),
+    "stepping": (lambda g, b: cf.stepping(b, [g.head], speed=50.0), OBJECT),
+    "stepping: pantographs": (lambda g, b: cf.stepping(g.shape, b, speed=50.0), (*OBJECT, [3], [None])),
+    "stepping: speed": (stepped("speed"), (*POSITIVE, 200.0)),
+    "stepping: positions": (stepped("positions"), (*NUMBERS, 1e4, [[15.0]], [])),
+    "stepping: time": (stepped("time"), OBJECT[:2]),
+    "stepping: duration": (stepped("duration"), (*POSITIVE, 1e-3)),
+    "stepping: conditions": (stepped("conditions"), ("x", 3, [3], [None])),
+    "Session.step": (step("steps"), (*WHOLE, 10**6)),
+    "Session.step: uplift_force": (step("uplift_force"), (*NUMBER, 1e4, [1.0, 2.0], [])),
+    "Session.step: base_height": (step("base_height"), (*NUMBER, 10.0, [0.1, 0.2], [])),
+    "Session.step: speed": (step("speed"), (*NUMBER, -1.0, 200.0)),
     "exudyn_model": (lambda g, b: cf.exudyn_model(b), OBJECT),
     "exudyn_model: pantographs": (lambda g, b: cf.exudyn_model(g.shape, b), (3, "x", [3], [None])),
     "solve_statics": (lambda g, b: cf.solve_statics(b), OBJECT),

@@ -135,7 +135,9 @@ LAYOUT: dict[str, Any] = {
 }  # fmt: skip
 PANTOGRAPH: dict[str, Any] = {
     "name": "another", "source": "elsewhere", "stages.mass": 8.0, "stages.stiffness": 5e3,
-    "stages.damping": 20.0, "uplift_force": 130.0, "mean_force": "EN 50367 DC 3 kV",
+    "stages.damping": 20.0, "stages.damping_up": 5.0, "stages.damping_down": 140.0, "stages.friction": 3.0,
+    "stages.travel": [0.03, 0.04], "stages.stop_stiffness": 2e5,
+    "uplift_force": 130.0, "mean_force": "EN 50367 DC 3 kV",
     "aerodynamic_force.quadratic": 0.02, "aerodynamic_force.linear": 0.2, "contact_stiffness": 6e4,
     "contact_damping": 5.0, "base": "rail", "head.width": 1.0, "head.spring_distance": 0.6,
     "head.roll_inertia": 2.0,
@@ -329,6 +331,11 @@ def test_a_key_of_one_support_or_dropper_reaches_it(place):
 STRIPS = {"spring_distance": 0.7, "strips": 2, "strip_distance": 0.5}
 STAGES = [{"mass": 7.0, "stiffness": 4e3, "damping": 10.0}, {"mass": 14.0, "stiffness": 50.0}]
 PUSHED = {"name": "pushed", "uplift_force": 120.0, "stages": STAGES, "head": STRIPS}
+BESIDE: dict[str, dict[str, Any]] = {
+    "damping_up": {"damping": 0.0, "damping_up": 20.0, "damping_down": 30.0},
+    "damping_down": {"damping": 0.0, "damping_up": 20.0, "damping_down": 30.0},
+    "stop_stiffness": {"travel": [0.02, 0.02]},
+}
 SET = {"name": "set", "mean_force": "EN 50367 AC", "stages": STAGES}
 
 
@@ -340,7 +347,10 @@ def known_of(pantograph: cf.Pantograph) -> list[Any]:
 
 @pytest.mark.parametrize("place", PANTOGRAPH)
 def test_a_key_of_a_pantograph_acts(place):
-    base = SET if place == "mean_force" else PUSHED
+    base: dict[str, Any] = SET if place == "mean_force" else PUSHED
+    key = place.removeprefix("stages.")
+    if key in BESIDE:  # they act with another one
+        base = base | {"stages": [STAGES[0] | BESIDE[key], STAGES[1]]}
     before, changed = cf.Pantograph(**base), put(base, place, PANTOGRAPH[place])
     if place == "head.strips":
         with pytest.raises(cf.InputError, match="strips = 2 and strip_distance belong together"):
