@@ -127,7 +127,7 @@ def test_what_is_refused(short_shape: cf.Shape, pantograph: cf.Pantograph) -> No
         ({"steps": 5000}, "the session lasts 4 s; give stepping a longer duration"),
         ({"steps": 0}, "steps"),
         ({"uplift_force": 12e3}, r"within ±5000 N"),
-        ({"uplift_force": [100.0, 100.0]}, r"has the shape \(2,\): give one number, or one a pantograph"),
+        ({"uplift_force": [100.0, 100.0]}, r"shape \(2,\) for 1 pantographs; give one for all or one each"),
         ({"base_height": 30.0}, r"within ±3 m"),
         ({"speed": -1.0}, "speed"),
         ({"speed": 300.0}, "speed"),
