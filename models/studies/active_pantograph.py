@@ -52,7 +52,7 @@ def main() -> None:
         axes.plot(GAINS, sigma, "o-", label=name)
     axes.set(xlabel="gain [N/N]", ylabel="σ of the contact force [N]", ylim=(0, 40))
     axes.set_title("EN 50318:2002 at 300 km/h, an invented controller", fontsize="medium")
-    axes.legend()
+    axes.legend(loc="lower left")
     axes.get_figure().savefig(Path(__file__).with_suffix(".png"), dpi=120)  # type: ignore[union-attr]
 
 
