@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from catenary_fe.fe.contact import PlacedPantograph, place
+from catenary_fe.fe.system import System
 from catenary_fe.layout import AnyPantograph
 
 Floats = NDArray[np.float64]
@@ -29,6 +31,11 @@ class RunCase:
     start: Floats
     distance: float
     warnings: Sequence[str] = ()
+
+    def placed(self, uplifts: Floats, system: System) -> list[PlacedPantograph]:
+        """The pantographs, each with its uplift [N], on a line where they start."""
+        spatial, height = system.spatial, system.contact_wire_height
+        return place(self.pantographs, uplifts, self.start, spatial=spatial, height=height)
 
     def steps(self, step: float) -> int:
         """Number of time steps [s]."""

@@ -164,10 +164,7 @@ def place_base(heads: PantographParameters, work: Work, c: int, j: int, time: fl
     for s in range(heads.heave.shape[2]):
         carried = carried or heads.heave[c, j, s] != 0.0
     p = heads.owner[c, j]
-    work.base[c, j] = 0.0 if carried else base_height(heads, c, p, time)
-    row = c * heads.follows.shape[1] + p
-    if not carried and heads.base.last[row] >= 0:
-        work.base[c, j] += surface_at(heads.base, row, time)[0]
+    work.base[c, j] = 0.0 if carried else risen_base(heads, c, p, time)
 
 
 @compiled

@@ -42,14 +42,17 @@ class EvenCurve:
     values: Floats
 
     @classmethod
-    def through(cls, x: Floats, heights: Floats) -> EvenCurve | None:
-        """A smooth surface through heights [m] at even places [m]; None of an even surface."""
+    def smooth(cls, x: Floats, heights: Floats) -> EvenCurve:
+        """Through heights [m] at even places [m] or times [s]."""
         from scipy.interpolate import CubicSpline
 
-        if not heights.any():
-            return None
         values = np.column_stack([heights, CubicSpline(x, heights)(x, 1)])
         return cls(float(x[0]), float(x[1] - x[0]), values)
+
+    @classmethod
+    def through(cls, x: Floats, heights: Floats) -> EvenCurve | None:
+        """A smooth surface; None of an even one."""
+        return cls.smooth(x, heights) if heights.any() else None
 
     def over(self, other: EvenCurve | None) -> EvenCurve:
         """This one on top of another at the same places."""
@@ -188,17 +191,13 @@ class BaseLine:
         self, starts: Sequence[float] | Floats, speed: float, step: float, steps: int
     ) -> list[EvenCurve | None]:
         """How bases move up that start at places [m]; None where nothing moves them."""
-        from scipy.interpolate import CubicSpline
-
         if not self.motions:
             return [None] * len(starts)
         times = step * np.arange(steps + 1.0)
         found: list[EvenCurve | None] = []
         for start in starts:
             each = [np.asarray(motion(float(start), speed, times)) for motion in self.motions]
-            heights = np.sum(each, axis=0)
-            values = np.column_stack([heights, CubicSpline(times, heights)(times, 1)])
-            found.append(EvenCurve(0.0, step, values))
+            found.append(EvenCurve.smooth(times, np.sum(each, axis=0)))
         return found
 
     def height_at_rest(self, placed: PlacedPantograph) -> float:

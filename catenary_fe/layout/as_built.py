@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema, model_validator
 
 from catenary_fe.layout.conditions.effect import AS_IT_IS, NumberOrTable, over_x, schema_over_x, table_over_x
-from catenary_fe.layout.conditions.irregularity import Wave, drawn_waves
+from catenary_fe.layout.conditions.irregularity import Wave, check_waves, drawn_waves
 from catenary_fe.layout.parameters import Parameters, Positive, problem_lines
 
 if TYPE_CHECKING:
@@ -37,10 +37,8 @@ class Drawn(Parameters):
         shortest, longest = self.shortest_wave, self.longest_wave
         if (shortest is None) != (longest is None):
             raise ValueError("shortest_wave and longest_wave belong together: give both or neither")
-        if shortest is not None and longest is not None and shortest >= longest:
-            raise ValueError(
-                f"shortest_wave = {shortest:g} m is not shorter than longest_wave = {longest:g} m"
-            )
+        if shortest is not None and longest is not None:
+            check_waves(shortest, longest)
         return self
 
     def at(self, x: Floats, stream: int) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,7 @@ from catenary_fe.theory.linkage import Linkage
 Floats = NDArray[np.float64]
 
 STOP, DAMPER, FRICTION, FRAME = range(4)  # kinds of laws
+_GUIDE = 1e-3  # [kg] of a frame's coordinate where bars have its mass
 BASE = -1  # number of the base, which moves along the track
 
 
@@ -217,6 +218,20 @@ class Substructure:
     follows: bool = True
     frame: Law | None = None
     mechanism: Mechanism | None = None
+
+    @cached_property
+    def guide(self) -> int:
+        """Number of a frame's coordinate; -1 without a frame."""
+        return self.frame.row.index(1.0) if self.frame else -1
+
+    def beside_bars(self) -> Substructure:
+        """The same without the frame's mass and spring, where its mechanism has bodies of its own."""
+        bodies = [Body(_GUIDE) if n == self.guide else body for n, body in enumerate(self.bodies)]
+        joints = [
+            replace(joint, stiffness=0.0) if (joint.upper, joint.lower) == (self.guide, BASE) else joint
+            for joint in self.joints
+        ]
+        return replace(self, bodies=tuple(bodies), joints=tuple(joints))
 
     @cached_property
     def laws(self) -> tuple[Law, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
@@ -24,7 +24,6 @@ _TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
     1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
     2: [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
 }
-_GUIDE_MASS = 1e-3  # [kg] of a frame's coordinate: its bars have the mass
 _HEAVE, _ROLL = 2, 3  # coordinates of a rigid body's node
 
 
@@ -102,31 +101,25 @@ def add_pantograph(
     pantograph: Any,
 ) -> PantographParts:
     """Add whatever assembles as a pantograph. Its weight is balanced by its frame."""
-    assembled, axes = (
-        pantograph.assemble(spatial=system.spatial, height=system.contact_wire_height),
-        system.axes,
-    )
+    assembled = pantograph.assemble(spatial=system.spatial, height=system.contact_wire_height)
+    axes, mechanism = system.axes, assembled.mechanism
+    made = assembled.beside_bars() if mechanism else assembled
     nominal = system.contact_wire_height * np.eye(3)[axes - 1]
     bodies, coordinates, roll_places = [], [], []
-    mechanism, guide = (
-        assembled.mechanism,
-        np.array(assembled.frame.row if assembled.frame else (0.0,)).argmax(),
-    )
-    for n, body in enumerate(assembled.bodies):
-        own = replace(body, mass=_GUIDE_MASS) if mechanism and n == guide else body
-        number, node = _add_body(mbs, own, nominal, axes - 1, ground)
+    for body in made.bodies:
+        number, node = _add_body(mbs, body, nominal, axes - 1, ground)
         bodies.append(number)
         coordinates.append((node, 0 if body.inertia is None else _HEAVE))
         if body.inertia is not None:
             roll_places.append((node, _ROLL))
     coordinates += roll_places
-    frame = add_frame(mbs, mechanism, coordinates[guide][0]) if mechanism else None
+    frame = add_frame(mbs, mechanism, coordinates[made.guide][0]) if mechanism else None
     on = [_coordinate_marker(mbs, place) for place in coordinates]
     loads = [
         (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=on[at], load=0.0))), int(at))
         for at in np.flatnonzero(assembled.load + assembled.base_stiffness + assembled.base_damping)
     ]
-    joints, grounded = _add_joints(mbs, assembled, on, ground)
+    joints, grounded = _add_joints(mbs, made, on, ground)
     middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
     strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]
     law = _Law(mbs, axes - 1, assembled.contact)
@@ -212,10 +205,7 @@ def _add_joints(
     Beside them what is not linear in a joint; returns both, of the latter those to the base.
     """
     found, grounded = [], []
-    own = assembled.mechanism is not None
     for joint in assembled.joints:
-        if own and joint.lower == BASE and assembled.frame and assembled.frame.row[joint.upper]:
-            joint = replace(joint, stiffness=0.0)  # what the bars do by themselves
         lower = ground if joint.lower == BASE else on[joint.lower]
         springs = [(on[joint.upper], lower, 1.0)]
         if joint.upper in assembled.rolling:

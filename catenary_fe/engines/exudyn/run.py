@@ -18,7 +18,6 @@ from catenary_fe.engines.faults import most_strained, place_of_heads, smaller_st
 from catenary_fe.engines.history import History, RunStopped, of_contacts, section_forces, where_pressed
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.contact import place
 from catenary_fe.layout import InputError, SolverError
 from catenary_fe.statics import Shape
 from catenary_fe.statics.newton import static_contact
@@ -102,14 +101,8 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
         )
     q = mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial)
     if own:
-        records = case.pantographs[:known]
-        placed = place(
-            records,
-            uplifts[:known],
-            case.start[:known],
-            spatial=system.spatial,
-            height=system.contact_wire_height,
-        )
+        described = replace(case, pantographs=case.pantographs[:known], start=case.start[:known])
+        placed = described.placed(uplifts[:known], system)
         placed = [replace(p, base=base) for p, base in zip(placed, bases, strict=False)]
         moved, placed = static_contact(system, placed)
         q[: system.dof.size] = moved

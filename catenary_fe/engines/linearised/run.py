@@ -23,7 +23,6 @@ from catenary_fe.engines.linearised.setup import Setup, set_up
 from catenary_fe.engines.linearised.start import static_contact
 from catenary_fe.engines.recorder import InitialState, Sizes
 from catenary_fe.engines.settings import TimeSettings
-from catenary_fe.fe.contact import place
 from catenary_fe.fe.reduction import LinearModel
 from catenary_fe.fe.system import System
 from catenary_fe.layout import CatenaryError, SolverError
@@ -131,28 +130,14 @@ class LinearisedEngine:
         for job in jobs:
             with suppress(CatenaryError):
                 case = job.task.case
-                placed.append(
-                    place(
-                        case.pantographs,
-                        job.task.uplifts,
-                        case.start,
-                        spatial=self._system.spatial,
-                        height=self._system.contact_wire_height,
-                    )
-                )
+                placed.append(case.placed(job.task.uplifts, self._system))
         steps = max(job.steps for job in jobs)
         return Sizes.of(placed, len(self.setup.model.contacts), steps, self._every)
 
     def _begin(self, job: _Job, batch: Batch, slot: int) -> bool:
         begin, case = clock.perf_counter(), job.task.case
         try:
-            placed = place(
-                case.pantographs,
-                job.task.uplifts,
-                case.start,
-                spatial=self._system.spatial,
-                height=self._system.contact_wire_height,
-            )
+            placed = case.placed(job.task.uplifts, self._system)
             placed = self._system.base_line.moving(placed, case.speed, self._time.step, job.steps)
             job.start = static_contact(self.setup, placed, case.speed, batch.signals[:, 0])
         except CatenaryError as error:

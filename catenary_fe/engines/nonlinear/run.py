@@ -32,7 +32,7 @@ from catenary_fe.engines.recorder import (
 from catenary_fe.engines.sections import Computed, sections_met
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.engines.tension import INTERVAL, TensionGauge, TensionRecord
-from catenary_fe.fe.contact import EvenCurve, PlacedPantograph, place
+from catenary_fe.fe.contact import EvenCurve, PlacedPantograph
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
 from catenary_fe.statics.newton import static_contact
@@ -64,13 +64,7 @@ class NonlinearEngine:
 
         bases : [m], shape (pantographs,), heights of bases that stand elsewhere; unset: none does
         """
-        placed = place(
-            case.pantographs,
-            uplifts,
-            case.start,
-            spatial=self._system.spatial,
-            height=self._system.contact_wire_height,
-        )
+        placed = case.placed(uplifts, self._system)
         placed = self._system.base_line.moving(placed, case.speed, self._time.step, steps)
         if bases is None:
             moved, placed = static_contact(self._system, placed)

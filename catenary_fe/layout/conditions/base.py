@@ -20,6 +20,7 @@ from catenary_fe.layout.conditions.effect import (
     pairs_in_order,
     schema_of_pairs,
 )
+from catenary_fe.layout.conditions.irregularity import check_waves
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.parameters import Parameters
 
@@ -95,11 +96,7 @@ class BaseMotion(Parameters):
             for name in ("shortest_wave", "longest_wave", "seed"):
                 if name in self.model_fields_set:
                     raise ValueError(f"{name} has no effect beside {given[0]}; leave it out")
-        if self.shortest_wave >= self.longest_wave:
-            raise ValueError(
-                f"shortest_wave = {self.shortest_wave:g} m is not shorter than longest_wave ="
-                f" {self.longest_wave:g} m"
-            )
+        check_waves(self.shortest_wave, self.longest_wave)
         return self
 
     def at(self, start: float, speed: float, times: Floats) -> Floats:

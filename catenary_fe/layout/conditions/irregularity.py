@@ -41,11 +41,7 @@ class ContactWireIrregularity(Parameters):
             for name in ("shortest_wave", "longest_wave", "seed"):
                 if name in self.model_fields_set:
                     raise ValueError(f"{name} has no effect beside height; leave it out")
-        if self.shortest_wave >= self.longest_wave:
-            raise ValueError(
-                f"shortest_wave = {self.shortest_wave:g} m is not shorter than longest_wave ="
-                f" {self.longest_wave:g} m"
-            )
+        check_waves(self.shortest_wave, self.longest_wave)
         return self
 
     def at(self, x: Floats) -> Floats:
@@ -55,6 +51,12 @@ class ContactWireIrregularity(Parameters):
         assert self.deviation is not None
         rng = np.random.default_rng(self.seed)
         return drawn_waves(x, self.deviation, self.shortest_wave, self.longest_wave, rng)
+
+
+def check_waves(shortest: float, longest: float) -> None:
+    """Raises ValueError where two wavelengths [m] are not in order."""
+    if shortest >= longest:
+        raise ValueError(f"shortest_wave = {shortest:g} m is not shorter than longest_wave = {longest:g} m")
 
 
 def drawn_waves(
