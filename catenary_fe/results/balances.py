@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+OF_A_SCRIPT, BY_A_SCRIPT = "of a script", "steered by a script"  # what a record says of its model
 IMBALANCE = 0.005  # of the uplift
 UNBALANCED = 0.02  # of the work done; of sound runs 0.5 % at most is missing, the integrator's own damping
 STAGES_UNBALANCED = 0.003  # of the contact force's work; 0.01 % in sound runs
@@ -28,7 +29,7 @@ def lumped(run: Run) -> list[tuple[int, AnyPantograph]]:
 
 def _steered(run: Run) -> bool:
     """Whether a script set uplifts or speeds on the way, of which there is no record."""
-    return run.data.attrs["method"] == "nonlinear" and "model" in run.data.attrs
+    return bool(run.data.attrs.get("model") == BY_A_SCRIPT)
 
 
 def _risen(run: Run, number: int, body: Substructure) -> Floats:

@@ -19,6 +19,7 @@ from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, RunInterrupted, SolverError
 from catenary_fe.results import Run
+from catenary_fe.results.balances import OF_A_SCRIPT
 from catenary_fe.results.run import FORMAT
 from catenary_fe.statics import LineShape, Shape
 
@@ -37,11 +38,11 @@ def make_run(
     warnings: Sequence[str],
     method: str,
     *,
-    scripted: bool = False,
+    scripted: str = "",
 ) -> Run:
     """Label what a run recorded, and note where it comes from.
 
-    scripted : whether a script may have changed the model
+    scripted : what a script did to the run, empty where it did nothing
     """
     import xarray as xr
 
@@ -85,10 +86,11 @@ def make_run(
         attributes["conditions"] = settled.conditions.model_dump_json(exclude_unset=True)
         attributes["title"] += f", {settled.conditions.name}"
         attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["conditions"])
-    scripted |= shape.has_effect and not (settled and settled.conditions)
+    if shape.has_effect and not (settled and settled.conditions):
+        scripted = scripted or OF_A_SCRIPT
     attributes["warnings"] = json.dumps([*warnings, *_brief(history.notes)])
     if scripted:
-        attributes["model"] = "of a script"
+        attributes["model"] = scripted
         attributes["input_sha256"] = _sha256(attributes["input_sha256"] + attributes["model"])
     return Run(xr.Dataset(_labelled(variables), _labelled(coordinates), attributes))
 

@@ -22,6 +22,7 @@ from catenary_fe.layout.arguments import checked, number, one_of
 from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.results import Run
+from catenary_fe.results.balances import OF_A_SCRIPT as MODEL_OF_A_SCRIPT
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine, MeanForce, aimed, share_of
@@ -128,8 +129,10 @@ def simulate(  # long by what it documents
             force, progress = _aimed(shape, case, time, progress)
         set_up = partial(_engine, shape, time, store_wire, method, energy, model)
 
+        scripted = "" if model is None else MODEL_OF_A_SCRIPT
+
         def label(uplifts: Floats, history: History) -> Run:
-            return make_run(shape, case, uplifts, time, history, warnings, method, scripted=model is not None)
+            return make_run(shape, case, uplifts, time, history, warnings, method, scripted=scripted)
 
         run = _until_mean_force(case, time, force, set_up, label, progress, keeper)
     for warning in run.warnings[len(warnings) :]:

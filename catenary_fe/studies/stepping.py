@@ -22,6 +22,7 @@ from catenary_fe.layout.conditions import Conditions, Effect
 from catenary_fe.layout.pantograph import check_pantographs
 from catenary_fe.layout.substructure import Substructure
 from catenary_fe.results import Run
+from catenary_fe.results.balances import BY_A_SCRIPT
 from catenary_fe.statics import Shape, settle
 from catenary_fe.studies.checks import check_speed, plan_run
 from catenary_fe.studies.linearised import MeanForce, aimed
@@ -87,7 +88,8 @@ def stepping(
 
     def label(history: History, *, steered: bool) -> Run:
         warnings = [*case.warnings, *([STEERED] if steered else [])]
-        return make_run(shape, case, uplifts, time, history, warnings, "nonlinear", scripted=steered)
+        by = BY_A_SCRIPT if steered else ""
+        return make_run(shape, case, uplifts, time, history, warnings, "nonlinear", scripted=by)
 
     given = uplift_force is not None or base_height is not None
     return Session(run, steps, time.step, shape, label, steered=given)

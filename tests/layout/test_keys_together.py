@@ -6,7 +6,8 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.layout import layout_warnings
-from tests.layout.test_every_key_acts import BASES, PLANE, SET, line_of, put
+from tests.layout.test_every_key_acts import BASES, PLANE, line_of, put
+from tests.layout.test_every_key_of_pantographs import SET
 
 INERT = {  # values that change nothing on a line, and what is said
     "messenger_lateral_stiffness in the plane": (

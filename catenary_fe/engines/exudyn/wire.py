@@ -58,7 +58,7 @@ class WireRun:
 
     @staticmethod
     def _body(placed: PlacedPantograph) -> Callable[..., object]:
-        return lambda *, spatial: placed.body
+        return lambda *, spatial, height: placed.body
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
         """Begin with velocities [m/s], shape (all,); Exudyn finds the accelerations by itself."""
