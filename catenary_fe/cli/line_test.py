@@ -30,6 +30,7 @@ class TestOptions:
     support : number of the support whose uplift it is
     pantograph : number, from 1, of the pantograph that was measured
     is_filtered : whether the force was low-passed when it was measured
+    scatter : folder of a scatter study
     """
 
     mapped: tuple[str, ...]
@@ -38,6 +39,7 @@ class TestOptions:
     support: int | None
     pantograph: int | None
     is_filtered: bool
+    scatter: str | None
 
     def refuse(self) -> None:
         """Raises InputError where there are any, for a comparison of runs."""
@@ -45,6 +47,7 @@ class TestOptions:
             "--map": self.mapped, "--shift-m": self.shift_m is not None,
             "--measured-speed-kmh": self.speed_kmh is not None, "--support": self.support is not None,
             "--pantograph": self.pantograph is not None, "--measured-filtered": self.is_filtered,
+            "--scatter": self.scatter is not None,
         }  # fmt: skip
         if faults := [f"{name}: is {_OF_TESTS}" for name, there in given.items() if there]:
             raise InputError(*faults)
@@ -67,9 +70,11 @@ def test_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(command)
     def with_options(
         mapped: tuple[str, ...], shift_m: float | None, measured_speed_kmh: float | None, support: int | None,
-        pantograph: int | None, measured_filtered: bool, **given: Any,
+        pantograph: int | None, measured_filtered: bool, scatter: str | None, **given: Any,
     ) -> Any:  # fmt: skip
-        test = TestOptions(mapped, shift_m, measured_speed_kmh, support, pantograph, measured_filtered)
+        test = TestOptions(
+            mapped, shift_m, measured_speed_kmh, support, pantograph, measured_filtered, scatter
+        )
         return command(test=test, **given)
 
     wrapped: Callable[..., Any] = with_options
@@ -89,6 +94,8 @@ _OPTIONS = (
     click.option("--pantograph", type=click.IntRange(1), help="Which of the run's was measured; unset: 1."),
     click.option("--measured-filtered", is_flag=True,
                  help="The measured force was low-passed at 20 Hz already."),
+    click.option("--scatter", type=click.Path(), metavar="FOLDER",
+                 help="A scatter study's folder: does the measurement lie in its bands?"),
 )  # fmt: skip
 
 
@@ -117,6 +124,7 @@ def compare_line_test(
         pantograph=(test.pantograph or 1) - 1,
         filter=kind or kept_evaluation(folder)[0],
         is_filtered=test.is_filtered,
+        scatter=test.scatter,
     )
     result = compared.as_dict()
     result["warnings"] = [*failed_checks([run], ["run"]), *compared.warnings]

@@ -82,9 +82,14 @@ def _along(ax: Axes, c: LineTestComparison, name: str, label: str, title: str) -
         seen = (one.x >= c.begin - margin) & (one.x <= c.end + margin)
         figures = f": {in_short(one.statistics, ('mean', 'std'))}" if said and one.statistics else ""
         ax.plot(one.x[seen], values[seen], color=colour, linewidth=1.0, label=f"{one.name}{figures}")
+    if name == "force" and c.band:
+        low, _, high = c.band.band.force
+        said_of_band = f"5 to 95 % of {c.band.band.samples} samples"
+        ax.fill_between(c.band.band.x, low, high, color=_RUN, alpha=0.2, linewidth=0, label=said_of_band)
     ax.plot(x[shown], own[shown], color=_RUN, linewidth=1.3, label=f"run{said}")
     ax.set_xlim(c.begin - margin, c.end + margin)
-    style.headroom(ax, 0.14 + 0.08 * (len(c.passes) // 2))
+    rows = (len(c.passes) + 2 * bool(c.band)) // 2
+    style.headroom(ax, 0.14 + 0.08 * rows)
     style.legend(ax, 2)
     style.finish(ax, style.ALONG, label, title)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import get_args
 
 from catenary_fe.layout import InputError
 from catenary_fe.layout.arguments import checked, number, one_of, whole
+from catenary_fe.results.line_test.band import in_band, read_band
 from catenary_fe.results.line_test.comparison import LineTestComparison
 from catenary_fe.results.line_test.record import LineTest
 from catenary_fe.results.line_test.run_side import RunSide
@@ -25,6 +27,7 @@ def compare_with_line_test(
     pantograph: int = 0,
     filter: FilterKind = "causal",
     is_filtered: bool = False,
+    scatter: str | Path | None = None,
 ) -> LineTestComparison:
     """Put a run beside what was measured on the line.
 
@@ -36,15 +39,22 @@ def compare_with_line_test(
     filter : "causal" (as EN 50317 measures) or "zero-phase", of both
     is_filtered : whether the force was low-passed at 20 Hz when it was measured, and is not to be again
 
+    scatter : folder of a scatter study of this line, speed and pantograph, in whose bands the measurement is
+        looked for
+
     Compared is what lies in the run's evaluated spans and was measured in all passes.
 
     Raises InputError where that is nothing, where no clear place is found, for fewer than 50 samples a
-    second, and for rows too far apart.
+    second, for rows too far apart, and for a study without such bands.
     """
     whole("pantograph", pantograph, least=0, most=run.data.sizes["pantograph"] - 1)
     one_of("filter", filter, get_args(FilterKind))
     histories = [p for p in test.passes if p.has_history]
     _check(shift, speed, is_filtered, bool(histories))
+    band = None
+    if scatter is not None:
+        name = run.pantographs[pantograph].name
+        band = read_band(scatter, speed=run.speed, pantograph=name, number=pantograph + 1)
     own = RunSide(run, pantograph, filter)
     notes = list(test.notes)
     even = [
@@ -61,6 +71,8 @@ def compare_with_line_test(
         raise InputError("no uplift was measured at a support of the run's evaluated spans")
     notes += [note for one in even for note in one.notes]
     has_force = any(p.force is not None for p in passes)
+    measured_uplift = max((most for _, most in uplift.values()), default=None)
+    placed = in_band(band, passes, measured_uplift, begin, end, filter) if band else None
     has_height = any(p.height_range is not None for p in passes)
     return LineTestComparison(
         run=run,
@@ -74,7 +86,8 @@ def compare_with_line_test(
         height_range=own.height_range(begin, end) if has_height else None,
         spectrum=own.spectrum(begin, end) if has_force else None,
         uplift=uplift,
-        notes=[*notes, *own.notes_on(passes, begin, end)],
+        band=placed,
+        notes=[*notes, *own.notes_on(passes, begin, end), *(placed.notes if placed else ())],
         warnings=warnings_of(passes, run.speed, own.spans_in(begin, end), end - begin, shift is None),
     )
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout.parameters import changed_by_copy
 from catenary_fe.results.criteria import Criterion
+from catenary_fe.results.line_test.band import InBand
 from catenary_fe.results.line_test.signals import Place
 from catenary_fe.results.line_test.verdict import deviations, pooled
 from catenary_fe.results.quantities import FORCE, UPLIFT
@@ -70,6 +71,7 @@ class LineTestComparison:
     height_range : [m] of the run's point of contact over that, filtered; None without a measured height
     spectrum : [Hz] frequencies and [N] amplitudes of the run's unfiltered force over that; None without one
     uplift : [m] largest of run and measurement at each support that was measured, by its number
+    band : what was measured in the bands of a scatter study; None without one
     notes : on what was read, assumed, found and left out
     warnings : on what makes the comparison doubtful
     """
@@ -85,6 +87,7 @@ class LineTestComparison:
     height_range: float | None
     spectrum: tuple[Floats, Floats] | None
     uplift: Mapping[int, tuple[float, float]]
+    band: InBand | None
     notes: Sequence[str]
     warnings: Sequence[str]
 
@@ -153,6 +156,7 @@ class LineTestComparison:
                 for n, (a, b) in self.uplift.items()
             ],
             "criteria": [row.as_dict() for row in self.criteria],
+            **({"scatter": self.band.as_dict()} if self.band else {}),
             "notes": list(self.notes),
             "warnings": list(self.warnings),
         }

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+from catenary_fe.results.line_test.band import WITHIN
 from catenary_fe.results.line_test.comparison import SHOWN, LineTestComparison
 from catenary_fe.results.quantities import FORCE, UPLIFT, Quantity
 from catenary_fe.results.statistics import ForceStatistics
 
 TextTable = tuple[tuple[str, ...], list[tuple[str, ...]]]
+_BY_KEY = {q.key: q for q in FORCE.values()}
 _BY_SPAN = ("mean", "std", "max", "min")
 
 
@@ -80,6 +83,28 @@ def pass_table(c: LineTestComparison) -> TextTable:
     return ("pass", "shift (m)", "correlation", "samples a second", "speed (km/h)"), rows
 
 
+def band_table(c: LineTestComparison) -> TextTable:
+    """Figures of what was measured in the bands of a scatter study, and the share of places inside."""
+    if c.band is None:
+        return (), []
+    passes = list(dict.fromkeys(name for row in c.band.figures for name in row["measured"]))
+    rows = []
+    for row in c.band.figures:
+        q = UPLIFT if row["figure"] == UPLIFT.key else _BY_KEY[row["figure"]]
+        ends = (q.number(row[side]) for side in ("low_5", "median", "high_95"))
+        rows.append((q.label, *ends, *(_in_band(q, row, name) for name in passes)))
+    if c.band.inside:
+        shares = (f"{c.band.inside[n]:.0f} %" if n in c.band.inside else "" for n in passes)
+        rows.append((f"places inside ({WITHIN} % on average)", "", "", "", *shares))
+    return ("", "5 %", "median", "95 %", *passes), rows
+
+
+def _in_band(quantity: Quantity, row: Mapping[str, Any], name: str) -> str:
+    if name not in row["measured"]:
+        return ""
+    return f"{quantity.number(row['measured'][name])}, {'inside' if row['inside'][name] else 'outside'}"
+
+
 def all_tables(c: LineTestComparison) -> Sequence[tuple[str, TextTable]]:
     """The tables that have rows, with what they show."""
     found = (
@@ -87,6 +112,7 @@ def all_tables(c: LineTestComparison) -> Sequence[tuple[str, TextTable]]:
         ("height of the point of contact", height_table(c)),
         ("span by span", span_table(c)),
         ("largest uplift at supports", support_table(c)),
+        ("in the bands of the scatter study", band_table(c)),
         ("passes", pass_table(c)),
     )
     return [(title, table) for title, table in found if table[1]]
