@@ -87,8 +87,8 @@ class PantographParameters(NamedTuple):
     follows, place : shape (slots, pantographs), 1 where the base follows the design height; [m] at the start
     owner, wire : shape (slots, contacts), pantograph (-1: none) and contact wire of each contact
     start : [m], shape (slots, contacts)
-    heave, roll : shape (slots, contacts, coordinates), height of the strip at the contact: as it heaves, and
-        for each metre to the left
+    shape : shape (slots, contacts, coordinates, powers), height of the strip at the contact, by powers of its
+        place [m] to the left
     k, d : [N/m], [N s/m], shape (slots, contacts)
     preload : [N], shape (slots, contacts), force on a wire at the height of its strip
     points : shape (slots, contacts), number of points of the contact's law; 0: it is straight
@@ -113,8 +113,7 @@ class PantographParameters(NamedTuple):
     owner: Integers
     wire: Integers
     start: Floats
-    heave: Floats
-    roll: Floats
+    shape: Floats
     k: Floats
     d: Floats
     preload: Floats

@@ -35,7 +35,7 @@ class RunCase:
     def placed(self, uplifts: Floats, system: System) -> list[PlacedPantograph]:
         """The pantographs, each with its uplift [N], on a line where they start."""
         spatial, height = system.spatial, system.contact_wire_height
-        return place(self.pantographs, uplifts, self.start, spatial=spatial, height=height)
+        return place(self.pantographs, uplifts, self.start, spatial=spatial, height=height, speed=self.speed)
 
     def steps(self, step: float) -> int:
         """Number of time steps [s]."""

@@ -150,7 +150,10 @@ def place_head(heads: PantographParameters, work: Work, c: int, j: int, lateral:
     """The head's height at a contact this far to the left, as a row of coordinates, and its compliance."""
     p, head, head_compliance = heads.owner[c, j], work.head[c, j], work.head_compliance[c, j]
     for s in range(head.size):
-        head[s] = heads.heave[c, j, s] + lateral * heads.roll[c, j, s]
+        height = 0.0
+        for k in range(heads.shape.shape[3] - 1, -1, -1):
+            height = height * lateral + heads.shape[c, j, s, k]
+        head[s] = height
     for s in range(head.size):
         head_compliance[s] = 0.0
         for r in range(head.size):
@@ -161,8 +164,8 @@ def place_head(heads: PantographParameters, work: Work, c: int, j: int, lateral:
 def place_base(heads: PantographParameters, work: Work, c: int, j: int, time: float) -> None:
     """Height of a strip that no body carries, at a time [s]; of others it is in their coordinates."""
     carried = False
-    for s in range(heads.heave.shape[2]):
-        carried = carried or heads.heave[c, j, s] != 0.0
+    for s in range(heads.shape.shape[2]):
+        carried = carried or heads.shape[c, j, s, 0] != 0.0
     p = heads.owner[c, j]
     work.base[c, j] = 0.0 if carried else risen_base(heads, c, p, time)
 

@@ -10,7 +10,7 @@ from catenary_fe.engines.arrays import Floats, PantographParameters, PantographS
 from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.contact_solver import base_height, cubic, surface_at
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.layout.substructure import DAMPER, FRAME, FRICTION, STOP
+from catenary_fe.layout.bodies import DAMPER, FRAME, FRICTION, STOP
 
 
 @compiled

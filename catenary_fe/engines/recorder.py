@@ -48,6 +48,7 @@ class Sizes:
     points: int = 0
     laws: int = 0
     frames: int = 0
+    powers: int = 1
 
     @classmethod
     def of(cls, runs: Sequence[Sequence[PlacedPantograph]], wires: int, steps: int, every: int) -> Sizes:
@@ -64,6 +65,7 @@ class Sizes:
             shapes=steps // every + 1 if every else 0,
             points=max((len(body.contact.points) for body in bodies), default=0),
             laws=max((sum(len(placed.body.laws) for placed in run) for run in runs), default=0),
+            powers=max((body.powers for body in bodies), default=1),
             frames=max((len(law.table) for body in bodies for law in body.laws), default=0),
         )
 
@@ -117,8 +119,7 @@ def make_pantographs(
         owner=np.full(each, -1),
         wire=np.zeros(each, dtype=np.int64),
         start=np.zeros(each),
-        heave=np.zeros(rows),
-        roll=np.zeros(rows),
+        shape=np.zeros((*rows, sizes.powers)),
         k=np.zeros(each),
         d=np.zeros(each),
         preload=np.zeros(each),
@@ -223,8 +224,7 @@ def load_pantographs(
         heads.base_load,
         heads.base_stiffness,
         heads.base_damping,
-        heads.heave,
-        heads.roll,
+        heads.shape,
     ):
         array[slot] = 0.0
     heads.owner[slot] = -1
@@ -251,8 +251,7 @@ def load_pantographs(
         body = start.pantographs[contact.pantograph].body
         heads.owner[slot, j], heads.wire[slot, j] = contact.pantograph, contact.wire
         heads.start[slot, j] = contact.position
-        heads.heave[slot, j, : body.size] = body.heave(contact.strip)
-        heads.roll[slot, j, : body.size] = body.roll(contact.strip)
+        heads.shape[slot, j, : body.size] = body.shape(contact.strip)[:, : heads.shape.shape[3]]
         law = body.contact
         heads.k[slot, j], heads.d[slot, j], heads.preload[slot, j] = law.stiffness, law.damping, law.preload
         heads.points[slot, j] = len(law.points)

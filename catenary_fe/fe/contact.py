@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from catenary_fe.fe.cable import hermite
 from catenary_fe.layout import AnyPantograph
+from catenary_fe.layout.bodies import Strip
 from catenary_fe.layout.conditions import BaseSignal
-from catenary_fe.layout.substructure import Strip, Substructure
+from catenary_fe.layout.substructure import Substructure
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -218,13 +219,17 @@ def place(
     *,
     spatial: bool,
     height: float | None = None,
+    speed: float | None = None,
 ) -> list[PlacedPantograph]:
     """Pantographs with their uplifts [N] at positions [m] along the track.
 
     height : [m] of the contact wire above the rail; unset: that at which each pantograph works
+    speed : [m/s]; None: at a standstill
     """
     return [
-        PlacedPantograph(pantograph.assemble(spatial=spatial, height=height), float(uplift), float(position))
+        PlacedPantograph(
+            pantograph.assemble(spatial=spatial, height=height, speed=speed), float(uplift), float(position)
+        )
         for pantograph, uplift, position in zip(pantographs, uplifts, positions, strict=True)
     ]
 

@@ -28,6 +28,7 @@ from catenary_fe.layout.line import Line, join_sections, read_catenary
 from catenary_fe.layout.linkage import LinkagePantograph
 from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.overlap import Overlap
+from catenary_fe.layout.panhead import AerodynamicForce, Panhead, Stage
 from catenary_fe.layout.pantograph import (
     AnyPantograph,
     AttachedPantograph,
@@ -47,7 +48,6 @@ from catenary_fe.layout.parts import (
     Termination,
     Wire,
 )
-from catenary_fe.layout.pushed import AerodynamicForce, Panhead, Stage
 from catenary_fe.layout.receptance import ReceptancePantograph
 from catenary_fe.layout.rules import layout_warnings
 from catenary_fe.layout.study import Study, load_study, study_schema

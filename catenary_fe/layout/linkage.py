@@ -10,20 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from catenary_fe.layout.bodies import BASE, FRAME, Body, ContactLaw, Joint, Law, Mechanism
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.panhead import AerodynamicForce, Panhead, Stage, lifted
 from catenary_fe.layout.parameters import GRAVITY, NonEmpty, NonNegative, Number, Parameters, Positive
-from catenary_fe.layout.pushed import Panhead, PushedPantograph, Stage
-from catenary_fe.layout.substructure import (
-    BASE,
-    FRAME,
-    Body,
-    ContactLaw,
-    Joint,
-    Law,
-    Mechanism,
-    Strip,
-    Substructure,
-)
+from catenary_fe.layout.pushed import PushedPantograph
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.theory.linkage import Bar, Linkage
 
 Floats = NDArray[np.float64]
@@ -146,13 +138,6 @@ class LinkagePantograph(PushedPantograph):
                 "uplift_force, mean_force and drive.torque: give exactly one, the force on the apex, the mean"
                 " contact force that it shall result in, or the torque from which it follows"
             )
-        if self.mean_force is not None and any(
-            (self.aerodynamic_force.quadratic, self.aerodynamic_force.linear)
-        ):
-            raise ValueError(
-                "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
-                " together; leave it out, or give an uplift_force instead"
-            )
         return self
 
     @model_validator(mode="after")
@@ -233,7 +218,7 @@ class LinkagePantograph(PushedPantograph):
         if self.drive.torque is None:
             return super().static_uplift(speed)
         uplift = float(self.lift(self.linkage.angle_at(self._apex(self.working_height))))
-        uplift += self.aerodynamic_force.at(speed)
+        uplift += sum(self.air(speed))
         if uplift <= 0:
             raise InputError(
                 f"{self.name}: drive, weight and air leave {uplift:.6g} N for the head at {3.6 * speed:g}"
@@ -241,10 +226,18 @@ class LinkagePantograph(PushedPantograph):
             )
         return uplift
 
-    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
+    @property
+    def airs(self) -> list[AerodynamicForce]:
+        """Forces of the air on the head's masses, head first, and on the apex."""
+        return [*(stage.aerodynamic_force for stage in self.head_stages), self.aerodynamic_force]
+
+    def assemble(
+        self, *, spatial: bool, height: float | None = None, speed: float | None = None
+    ) -> Substructure:
         """The head's masses on the frame's apex, which counts from where it is with the wire at its height.
 
         height : [m] of the contact wire above the rail; unset: the working height
+        speed : [m/s], by which the air shares the uplift force out; None: at a standstill
 
         Raises InputError for a wire that the frame does not reach.
         """
@@ -256,32 +249,25 @@ class LinkagePantograph(PushedPantograph):
                 f"{self.name}: with the contact wire at {height or self.working_height:g} m the apex would be"
                 f" {apex:.3f} m above the base pivot; {error}; look at pivot_height and head_height"
             ) from None
-        head, first, count = self.panhead, self.head_stages[0], self.panhead.strips
-        lever = head.spring_distance / 2 if head.spring_distance and spatial else 0.0
-        inertia = head.rolling_inertia(first.mass) / count if lever else None
-        frame = count + len(self.head_stages) - 1
-        joints = [first.joint(i, count, 1 / count, lever) for i in range(count)]
-        joints += [stage.joint(i, i + 1) for i, stage in enumerate(self.head_stages[1:], start=count)]
+        bodies, joints, strips = self.panhead.on_springs(self.head_stages, on_base=False, spatial=spatial)
+        frame = len(bodies)
         table, force_slope = self._frame_law(apex, angle)
         joints.append(self._frame_joint(frame, apex, angle, force_slope))
-        bodies = [Body(first.mass / count, inertia)] * count
-        bodies += [Body(stage.mass) for stage in self.head_stages[1:]]
         bodies.append(Body(float(self.linkage.mass(angle))))
-        lifted = [0.0] * frame + [1.0]
+        up = list(lifted(self.shares(speed), frame + 1, len(self.head_stages) + 1))
         if self.drive.bellows_stiffness and self.drive.lag:
             stiffness = self.drive.bellows_stiffness / float(self.linkage.rise(angle)) ** 2
             bodies.append(Body(_BELLOWS))
-            lifted.append(0.0)
+            up.append(0.0)
             joints.append(Joint(frame, frame + 1, stiffness, 0.0))
             joints.append(Joint(frame + 1, BASE, 0.0, stiffness * self.drive.lag))
-        apart = head.strip_distance or 0.0
-        row = [0.0] * (len(bodies) + count * (inertia is not None))
+        row = [0.0] * len(bodies)
         row[frame] = 1.0
         return Substructure(
             bodies=tuple(bodies),
             joints=tuple(joints),
-            lifted=tuple(lifted),
-            strips=tuple(Strip(apart * (0.5 - i) if count > 1 else 0.0, i) for i in range(count)),
+            lifted=tuple(up),
+            strips=tuple(strips),
             contact=ContactLaw(self.contact_stiffness, self.contact_damping),
             follows=False,
             frame=Law(FRAME, tuple(row), *table),

@@ -9,8 +9,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import model_validator
 
 from catenary_fe.layout.arguments import number
+from catenary_fe.layout.bodies import ContactLaw, Strip
 from catenary_fe.layout.errors import InputError
 from catenary_fe.layout.linkage import LinkagePantograph
+from catenary_fe.layout.panhead import AerodynamicForce, Panhead, Stage, lifted
 from catenary_fe.layout.parameters import (
     NonEmpty,
     NonNegative,
@@ -19,9 +21,9 @@ from catenary_fe.layout.parameters import (
     Text,
     shorten,
 )
-from catenary_fe.layout.pushed import Base, KnownPantograph, Panhead, PushedPantograph, Stage
+from catenary_fe.layout.pushed import Base, KnownPantograph, PushedPantograph
 from catenary_fe.layout.receptance import ReceptancePantograph
-from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
+from catenary_fe.layout.substructure import Substructure
 
 
 class Pantograph(PushedPantograph):
@@ -42,28 +44,26 @@ class Pantograph(PushedPantograph):
         """What the head is, be it given or the usual one."""
         return self.head or Panhead()
 
-    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
-        """Its bodies, joints, strips and contact law; two strips share the head's mass, spring and damper.
+    @property
+    def airs(self) -> list[AerodynamicForce]:
+        """Forces of the air, mass by mass, head first; the pantograph's own is the last one."""
+        return [*(stage.aerodynamic_force for stage in self.stages), self.aerodynamic_force]
+
+    def assemble(
+        self, *, spatial: bool, height: float | None = None, speed: float | None = None
+    ) -> Substructure:
+        """Its bodies, joints, strips and contact law.
 
         spatial : whether the line has coordinates across the track, in which a head on two springs rolls
         height : [m] of the contact wire above the rail; of no use here
+        speed : [m/s], by which the air shares the uplift force out; None: at a standstill
         """
-        head, first, count = self.panhead, self.stages[0], self.panhead.strips
-        lever = head.spring_distance / 2 if head.spring_distance and spatial else 0.0
-        inertia = head.rolling_inertia(first.mass) / count if lever else None
-        below = [*range(count, count + len(self.stages) - 1), BASE]
-        joints = [first.joint(i, below[0], 1 / count, lever) for i in range(count)]
-        joints += [
-            stage.joint(i, lower) for i, lower, stage in zip(below, below[1:], self.stages[1:], strict=False)
-        ]
-        strips = [Body(first.mass / count, inertia)] * count
-        single = len(self.stages) == 1
-        apart = head.strip_distance or 0.0
+        bodies, joints, strips = self.panhead.on_springs(self.stages, on_base=True, spatial=spatial)
         return Substructure(
-            bodies=(*strips, *(Body(stage.mass) for stage in self.stages[1:])),
+            bodies=tuple(bodies),
             joints=tuple(joints),
-            lifted=(1 / count,) * count if single else (0.0,) * (len(below) + count - 2) + (1.0,),
-            strips=tuple(Strip(apart * (0.5 - i) if count > 1 else 0.0, i) for i in range(count)),
+            lifted=lifted(self.shares(speed), len(bodies), len(self.stages)),
+            strips=tuple(strips),
             contact=ContactLaw(self.contact_stiffness, self.contact_damping),
             follows=self.base == "contact wire",
         )
@@ -150,7 +150,9 @@ class ElasticPantograph(_WithoutMasses):
         """[N] on a wire at an elevation [m] above its nominal height. Raises InputError unless finite."""
         return self.assemble(spatial=False).contact.force(-number("elevation", elevation, "m"))
 
-    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
+    def assemble(
+        self, *, spatial: bool, height: float | None = None, speed: float | None = None
+    ) -> Substructure:
         """One strip without mass at the nominal contact wire height, and the law."""
         law = ContactLaw(self.stiffness, preload=self.force or 0.0, points=self.law)
         return Substructure((), (), (), (Strip(),), law, self.base == "contact wire")
@@ -188,7 +190,9 @@ class AttachedPantograph(_WithoutMasses):
         """Its script moves it, or not."""
         return "rail"
 
-    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
+    def assemble(
+        self, *, spatial: bool, height: float | None = None, speed: float | None = None
+    ) -> Substructure:
         """Raises InputError: only the script that made the bodies knows them."""
         raise InputError(
             f"{self.name}: {self.source}, which no record knows; run the script again that made them"

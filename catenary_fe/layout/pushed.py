@@ -1,4 +1,4 @@
-"""What pantographs of masses have in common: the head, the force that pushes them up, contact, base."""
+"""What pantographs of masses have in common: the force that pushes them up, the air, contact, base."""
 
 from __future__ import annotations
 
@@ -8,118 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import field_validator, model_validator
 
-from catenary_fe.layout.arguments import number
 from catenary_fe.layout.current_collection import MeanForceRule, target_mean_force
 from catenary_fe.layout.errors import InputError
-from catenary_fe.layout.parameters import NonNegative, Number, Parameters, Positive, Text, shorten
-from catenary_fe.layout.substructure import Joint
+from catenary_fe.layout.panhead import AerodynamicForce, Knuckle
+from catenary_fe.layout.parameters import NonNegative, Parameters, Positive, Text, shorten
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Base = Literal["contact wire", "rail"]
-
-
-class AerodynamicForce(Parameters):
-    """Upward force of the air on the lowest mass, a V² + b V."""
-
-    quadratic: Number = 0.0
-    """[N s²/m²] a, times the square of the speed in m/s"""
-    linear: Number = 0.0
-    """[N s/m] b, times the speed in m/s"""
-
-    def at(self, speed: float) -> float:
-        """[N] at a speed in m/s. Raises InputError for a negative or non-finite speed."""
-        speed = number("speed", speed, "m/s", least=0.0)
-        return self.quadratic * speed**2 + self.linear * speed
-
-
-class Panhead(Parameters):
-    """The head beyond its mass: its width, a roll of its own, a second collector strip."""
-
-    width: Positive = 1.2
-    """[m] of the part that may touch the wire, half to each side of the track's centre; the default is that
-    of the 1600 mm head (recalled)"""
-    spring_distance: Positive | None = None
-    """[m] sideways between the two springs that share the stiffness below the head, which then rolls on
-    them; unset: a head that stays level"""
-    roll_inertia: Positive | None = None
-    """[kg m²] about the track's direction; unset: that of a uniform bar of the head's width"""
-    strips: Literal[1, 2] = 1
-    """collector strips, one behind the other; two share the head's mass, spring and damper"""
-    strip_distance: Positive | None = None
-    """[m] along the track between two strips"""
-
-    @model_validator(mode="after")
-    def _options_belong_together(self) -> Self:
-        if (self.strips == 2) != (self.strip_distance is not None):
-            raise ValueError("strips = 2 and strip_distance belong together: give both or neither")
-        if self.roll_inertia and self.spring_distance is None:
-            raise ValueError("roll_inertia has no effect without spring_distance; give both or neither")
-        return self
-
-    def rolling_inertia(self, mass: float) -> float:
-        """[kg m²] of a head of this mass [kg]."""
-        return self.roll_inertia or mass * self.width**2 / 12
-
-
-class Stage(Parameters):
-    """A mass with the spring and damper below it, which join it to the next stage or to the base."""
-
-    mass: Positive
-    """[kg] of the stage"""
-    stiffness: NonNegative
-    """[N/m] of the spring below the mass"""
-    damping: NonNegative = 0.0
-    """[N s/m] of the damper below the mass"""
-    damping_up: NonNegative | None = None
-    """[N s/m] of a damper that differs: while the mass rises against what is below it"""
-    damping_down: NonNegative | None = None
-    """[N s/m] likewise, while it comes down; both instead of `damping`"""
-    friction: NonNegative = 0.0
-    """[N] dry, between the mass and what is below it"""
-    travel: tuple[Positive, Positive] | None = None
-    """[m] down and up by which the mass can move from where the spring below it is force-free, before it
-    meets its stops; unset: no stops"""
-    stop_stiffness: Positive = 1e6
-    """[N/m] of the stops (a value of an SNCF thesis)"""
-
-    @model_validator(mode="after")
-    def _one_damper(self) -> Self:
-        up, down = self.damping_up, self.damping_down
-        if (up is None) != (down is None):
-            raise ValueError("damping_up and damping_down belong together: give both or neither")
-        if up is not None and self.damping:
-            raise ValueError("damping has no effect beside damping_up and damping_down; leave it out")
-        if self.travel is None and self.stop_stiffness != type(self).model_fields["stop_stiffness"].default:
-            raise ValueError("stop_stiffness has no effect without travel; give both or neither")
-        return self
-
-    def joint(self, upper: int, lower: int, share: float = 1.0, lever: float = 0.0) -> Joint:
-        """The spring and damper below the mass, or a share of them, with what is not linear there."""
-        up, down = (self.damping if each is None else each for each in (self.damping_up, self.damping_down))
-        common = min(up, down)
-        return Joint(
-            upper,
-            lower,
-            share * self.stiffness,
-            share * common,
-            lever,
-            rising=share * (up - common),
-            falling=share * (down - common),
-            friction=share * self.friction,
-            travel=self.travel,
-            stop_stiffness=share * self.stop_stiffness,
-        )
-
-    @property
-    def in_words(self) -> str:
-        """One line."""
-        damper = f"{self.damping:g} N s/m"
-        if self.damping_up is not None:
-            damper = f"{self.damping_up:g} N s/m up and {self.damping_down:g} down"
-        friction = f", {self.friction:g} N of friction" if self.friction else ""
-        stops = f", stops at −{self.travel[0]:g} and {self.travel[1]:g} m" if self.travel else ""
-        return f"{self.mass:g} kg on {self.stiffness:g} N/m, {damper}{friction}{stops}"
 
 
 class KnownPantograph(Parameters):
@@ -157,6 +53,8 @@ class PushedPantograph(KnownPantograph):
     """[N] mean contact force to reach, or the name of an EN 50367 formula"""
     aerodynamic_force: AerodynamicForce = AerodynamicForce()
     """of the air, on the lowest mass, added to uplift_force"""
+    knuckle: Knuckle = "leading"
+    """which end runs ahead, of a frame with one arm: forces of the air may know both"""
     contact_stiffness: Positive = 50e3
     """[N/m] between head and contact wire, no tension"""
     contact_damping: NonNegative = 0.0
@@ -181,12 +79,36 @@ class PushedPantograph(KnownPantograph):
                 "uplift_force and mean_force: give exactly one, the force that pushes the lowest mass up"
                 " or the mean contact force that it shall result in"
             )
-        if self.mean_force is not None and self.aerodynamic_force != AerodynamicForce():
+        return self
+
+    @model_validator(mode="after")
+    def _air_acts(self) -> Self:
+        if self.mean_force is not None and any(air != AerodynamicForce() for air in self.airs):
             raise ValueError(
                 "aerodynamic_force has no effect beside mean_force, which is what air and uplift result in"
                 " together; leave it out, or give an uplift_force instead"
             )
+        if self.knuckle == "trailing" and not any(air.trailing for air in self.airs):
+            raise ValueError("knuckle = 'trailing' has no effect: no aerodynamic_force has `trailing`")
         return self
+
+    @property
+    def airs(self) -> list[AerodynamicForce]:
+        """Forces of the air, mass by mass, head first; that on the lowest mass is the last one."""
+        return [self.aerodynamic_force]
+
+    def air(self, speed: float) -> list[float]:
+        """[N] of :attr:`airs` at a speed in m/s. Raises InputError for a negative or non-finite speed."""
+        return [air.at(speed, self.knuckle) for air in self.airs]
+
+    def shares(self, speed: float | None) -> list[float]:
+        """Of :attr:`airs` in the whole uplift force, the lowest mass's own beside the last of them.
+
+        speed : [m/s]; None: at a standstill
+        """
+        air = self.air(speed or 0.0)
+        above, total = air[:-1], self.static_uplift(speed or 0.0) if any(air[:-1]) else 1.0
+        return [*(force / total for force in above), 1.0 - sum(above) / total]
 
     def forces_in_words(self) -> list[tuple[str, str]]:
         """Names and values, for a table."""
@@ -195,7 +117,7 @@ class PushedPantograph(KnownPantograph):
             ("mean force to reach", str(self.mean_force))
             if force is None
             else ("uplift force", f"{force:g} N"),
-            ("force of the air", f"{air.quadratic:g} V² + {air.linear:g} V (N, m/s)"),
+            ("force of the air", air.in_words(self.knuckle)),
             ("contact", f"{self.contact_stiffness:g} N/m, {self.contact_damping:g} N s/m, no tension"),
         ]
 
@@ -208,7 +130,7 @@ class PushedPantograph(KnownPantograph):
             target = self.target_mean_force(speed)
             assert target is not None
             return target
-        uplift = self.uplift_force + self.aerodynamic_force.at(speed)
+        uplift = self.uplift_force + sum(self.air(speed))
         if uplift <= 0:
             raise InputError(
                 f"{self.name}: uplift and aerodynamic force add up to {uplift:.6g} N at {3.6 * speed:g} km/h:"

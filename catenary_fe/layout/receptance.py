@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, WithJsonSchema, field_validator, model_validator
 
+from catenary_fe.layout.bodies import BASE, Body, ContactLaw, Joint, Strip
 from catenary_fe.layout.errors import InputError
+from catenary_fe.layout.panhead import Panhead
 from catenary_fe.layout.parameters import NonNegative, Number, Positive, refuse, shorten
-from catenary_fe.layout.pushed import Panhead, PushedPantograph
-from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Joint, Strip, Substructure
+from catenary_fe.layout.pushed import PushedPantograph
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.layout.tables import Column, read_table
 from catenary_fe.theory import MassChain, fit_receptance
 from catenary_fe.theory.receptance import LEAST_POINTS, MOST_MODES
@@ -130,7 +132,9 @@ class ReceptancePantograph(PushedPantograph):
         """A level head with one strip."""
         return self.head or Panhead()
 
-    def assemble(self, *, spatial: bool, height: float | None = None) -> Substructure:
+    def assemble(
+        self, *, spatial: bool, height: float | None = None, speed: float | None = None
+    ) -> Substructure:
         """The chain; dampers between any two masses, and from each to the base."""
         chain, n = self.chain, len(self.chain.masses)
         D = chain.damping.tolist()

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import AnyPantograph
-from catenary_fe.layout.substructure import DAMPER, STOP, Substructure
+from catenary_fe.layout.bodies import DAMPER, STOP
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.results.check import Check
 
 if TYPE_CHECKING:
@@ -70,13 +71,14 @@ def force_balance(run: Run) -> Iterator[Check]:
         if not _follows_from_motion(body):
             continue
         duration = float(run.time[-1])
-        pressed = body.stiffness.sum(axis=0) @ heights - body.base_stiffness.sum() * risen
+        n = len(body.bodies)  # pitch does not move the middle
+        pressed = body.stiffness[:n, :n].sum(axis=0) @ heights - body.base_stiffness.sum() * risen
         pressed = pressed + _law_forces(body, heights, (risen, _roof(run, i)), run.step).sum(axis=0)
         pushed = np.trapezoid(uplift - force - pressed, dx=run.step)
         over = heights - _roof(run, i)
-        pushed -= body.damping.sum(axis=0) @ (over[:, -1] - over[:, 0])
+        pushed -= body.damping[:n, :n].sum(axis=0) @ (over[:, -1] - over[:, 0])
         velocity = (1.5 * heights[:, -1] - 2 * heights[:, -2] + 0.5 * heights[:, -3]) / run.step
-        gained = body.mass.sum(axis=0) @ velocity
+        gained = np.diag(body.mass)[:n] @ velocity
         found.append((100 * abs(float(pushed - gained)) / duration / uplift, name_of(run, i)))
     if found:
         value, name = worst(found)
@@ -92,14 +94,17 @@ def _motion(run: Run, number: int, pantograph: AnyPantograph) -> tuple[Substruct
 
     Both [m] above the nominal contact wire height.
     """
-    body = pantograph.assemble(spatial=False, height=run.catenary.contact_wire_height)
-    heights = run.data["mass_height"].values[number, : body.size] - run.catenary.contact_wire_height
+    body = pantograph.assemble(spatial=False, height=run.catenary.contact_wire_height, speed=run.speed)
+    heights = run.data["mass_height"].values[number, : len(body.bodies)] - run.catenary.contact_wire_height
     return body, heights, _risen(run, number, body)
 
 
 def _follows_from_motion(body: Substructure) -> bool:
-    """Whether all forces in a pantograph follow from places and rates: dry friction's at rest does not."""
-    return all(law.kind in (STOP, DAMPER) for law in body.laws)
+    """Whether all forces in a pantograph follow from heights and their rates.
+
+    Dry friction's at rest does not, nor do those of strips that bend.
+    """
+    return not body.bending and all(law.kind in (STOP, DAMPER) for law in body.laws)
 
 
 def _law_forces(body: Substructure, heights: Floats, base: tuple[Floats, Floats], step: float) -> Floats:
@@ -109,7 +114,7 @@ def _law_forces(body: Substructure, heights: Floats, base: tuple[Floats, Floats]
     """
     forces, rates = np.zeros_like(heights), np.gradient(heights, step, axis=1) if body.laws else heights
     for law in body.laws:
-        row = np.array(law.row)
+        row = np.array(law.row)[: len(heights)]
         rate = row @ rates + law.to_base * np.gradient(base[1], step)
         forces += np.outer(row, law.push(row @ heights + law.to_base * base[0], rate))
     return forces
@@ -120,9 +125,10 @@ def met_stops(run: Run, number: int, pantograph: AnyPantograph) -> float:
     body, heights, risen = _motion(run, number, pantograph)
     highest = 0.0
     for law in body.laws:
-        row = np.array(law.row)
+        whole = np.array(law.row)
+        row = whole[: len(heights)]
         if law.kind == STOP and (row @ heights + law.to_base * risen).max() > law.values[0]:
-            own = law.values[1] * float(row @ np.linalg.solve(body.mass, row))
+            own = law.values[1] * float(whole @ np.linalg.solve(body.mass, whole))
             highest = max(highest, float(np.sqrt(own)) / (2 * np.pi))
     return highest
 

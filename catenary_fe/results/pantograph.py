@@ -114,7 +114,7 @@ def pantograph_response(
         if found.ndim != 1 or not found.size or (found <= 0).any():
             raise InputError("frequencies: must be a list of frequencies above 0 Hz; give one at least")
     uplift = pantograph.static_uplift(number("speed", speed, "m/s", least=0.0))
-    body = pantograph.assemble(spatial=False)
+    body = pantograph.assemble(spatial=False, speed=speed)
     heights = np.linspace(-REACH, REACH, _STEPS + 1)
     own, ratios = _modes(body)
     forces = np.maximum(0.0, _static_forces(body, uplift, heights))
@@ -151,7 +151,7 @@ def receptance_text(response: PantographResponse) -> str:
 
 def _head(body: Substructure) -> Floats:
     """Shape (coordinates,): the head's height as made of the coordinates; the mean of several strips."""
-    return np.asarray(np.mean([body.heave(strip) for strip in body.strips], axis=0))
+    return np.asarray(np.mean([body.row(strip) for strip in body.strips], axis=0))
 
 
 def _receptance(body: Substructure, frequency: Floats) -> Complex:

@@ -126,7 +126,10 @@ def record_of(
     shape = settle(shape, conditions) if conditions else shape
     whole = stepping(shape, pantographs, speed=speed, positions=positions, time=time)
     if cut == "head":
-        starts = [[float(y[p.panhead.strips]), 0.0] for p, y in zip(pantographs, whole.heights, strict=True)]
+        starts = [
+            [float(y[p.assemble(spatial=False).joints[0].lower]), 0.0]
+            for p, y in zip(pantographs, whole.heights, strict=True)
+        ]
     else:
         starts = [[force, 0.0] for force in whole.uplift_force.tolist()]
     return Record(

@@ -28,7 +28,8 @@ from catenary_fe.fe.wire_problem import (
 )
 from catenary_fe.layout import InputError, SolverError
 from catenary_fe.layout.arguments import checked, number, one_of
-from catenary_fe.layout.substructure import ContactLaw, Strip, Substructure
+from catenary_fe.layout.bodies import ContactLaw, Strip
+from catenary_fe.layout.substructure import Substructure
 from catenary_fe.statics.newton import free_part, solve_loaded
 from catenary_fe.theory import ElasticPantograph, MovingForce
 
@@ -182,7 +183,7 @@ class _WireRun:
             if np.isfinite(p.wire_heights[0]):
                 force += push * system.row(0, p.position)
             if body.size:
-                row = body.heave(body.strips[0])
+                row = body.row(body.strips[0])
                 heads[i, : body.size] = np.linalg.solve(body.mass, p.uplift * body.load - push * row)
         free = spsolve(system.free(system.mass).tocsc(), system.gather(force))
         return system.spread(np.atleast_1d(free)), heads

@@ -11,6 +11,7 @@ finite, a position off the wire, and a wire with a stiffness that the closed for
 """
 
 from catenary_fe.theory.beam import (
+    free_beam_shapes,
     static_deflection,
     static_deflection_unbounded,
     static_uniform_load,
@@ -80,6 +81,7 @@ __all__ = [
     "elastic_pantograph_force",
     "fit_receptance",
     "force_at_rest",
+    "free_beam_shapes",
     "generate_gusts",
     "group_velocity",
     "influence_interval",

@@ -1,4 +1,4 @@
-"""The tensioned beam at rest, with its boundary layer, and under a steadily moving force on a foundation."""
+"""The tensioned beam at rest and under a steadily moving force on a foundation; modes of the free beam."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ from catenary_fe.theory.wires import Beam, String, known
 # Characteristic roots nearer than this (relatively) are taken as double: their difference would only be
 # rounding.
 _DOUBLE_ROOT = 1e-5
+# Wavenumbers times length of the free beam's first two bending modes.
+_FREE = 4.730040744862704, 7.853204624095838
 # Nearer to the critical speed than this (relatively) no steady state is returned.
 _CRITICAL = 1e-9
 
@@ -94,6 +96,38 @@ def static_deflection_unbounded(
     distance, layer = np.abs(numbers("x", x) - finite("position", position, "m")), _layer(wire)
     rounding = 0.0 if layer == 0.0 else -layer * np.expm1(-distance / layer)
     return np.asarray(-finite("force", force, "N") / (2.0 * wire.tension) * (distance - rounding))
+
+
+def free_beam_shapes(count: int, length: float) -> FloatArray:
+    """Coefficients of 1, y, y², … y⁷, shape (count, 8): bending modes of a uniform beam that hangs free.
+
+    count : 1 or 2, of modes: the first is symmetric about the middle, y = 0, the second antisymmetric
+    length : [m]
+
+    Each shape's square has the mean 1, so that its modal mass is the beam's mass. The exact shapes,
+    cosh(βξ)/cosh(β/2) + cos(βξ)/cos(β/2) and the same of sines, ξ = y/L, tan(β/2) ± tanh(β/2) = 0, are
+    projected on Legendre polynomials to the seventh degree: without motion as a rigid body.
+    Source: textbook; projection derived here.
+    """
+    if count not in (1, 2):
+        raise refuse("count", count, "must be 1 or 2", "higher ones are not there")
+    length = positive("length", length, "m")
+    points, weights = np.polynomial.legendre.leggauss(40)
+    found = np.zeros((count, 8))
+    for n, beta in enumerate(_FREE[:count]):
+        even = n % 2 == 0
+        circular, hyperbolic = (np.cos, np.cosh) if even else (np.sin, np.sinh)
+        exact = hyperbolic(beta * points / 2) / hyperbolic(beta / 2) + circular(beta * points / 2) / circular(
+            beta / 2
+        )
+        series = np.zeros(8)
+        for k in (2, 4, 6) if even else (3, 5, 7):
+            polynomial = np.polynomial.legendre.legval(points, np.eye(8)[k])
+            series[k] = (2 * k + 1) / 2 * np.sum(weights * exact * polynomial)
+        series /= np.sqrt(np.sum(series**2 / (2 * np.arange(8) + 1)))
+        plain = np.polynomial.legendre.leg2poly(series)
+        found[n, : plain.size] = plain * (2 / length) ** np.arange(plain.size)
+    return found
 
 
 def steady_moving_force(beam: Beam, distance: ArrayLike, *, speed: float, force: float) -> FloatArray:

@@ -172,7 +172,7 @@ class ExudynModel:
             force = float(uplift) * body.load + risen * body.base_load
             force += height * body.base_stiffness + rate * body.base_damping
             if body.mechanism:  # the bars' own loads lift the head, and carry it
-                force -= (body.mechanism.lifted + body.mechanism.carried) * body.load
+                force[body.guide] -= body.mechanism.lifted + body.mechanism.carried
             for load, coordinate in parts.loads:
                 self.mbs.SetLoadParameter(load, "load", float(force[coordinate]))
             for law in parts.grounded:

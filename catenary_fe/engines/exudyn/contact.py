@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from catenary_fe.engines.exudyn.frame import FrameParts, add_frame
 from catenary_fe.engines.exudyn.laws import joint_law, push_only
 from catenary_fe.fe.system import System
-from catenary_fe.layout import AnyPantograph, AttachedPantograph
-from catenary_fe.layout.substructure import BASE, Body, ContactLaw, Strip, Substructure
+from catenary_fe.layout import AnyPantograph, AttachedPantograph, InputError
+from catenary_fe.layout.bodies import BASE, Body, ContactLaw, Strip
+from catenary_fe.layout.substructure import Substructure
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,7 +25,8 @@ _TO_UP = {  # rotations that turn the first axis, along which Mass1D moves, up
     1: [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
     2: [[0, 0, -1], [0, 1, 0], [1, 0, 0]],
 }
-_HEAVE, _ROLL = 2, 3  # coordinates of a rigid body's node
+_ROLL, _PITCH = 3, {1: 5, 2: 4}  # coordinates of a rigid body's node; pitch by the axis that is up
+_ANY = 1.0  # [kg m²] about an axis that a body is held in
 
 
 @dataclass(frozen=True)
@@ -102,32 +104,30 @@ def add_pantograph(
 ) -> PantographParts:
     """Add whatever assembles as a pantograph. Its weight is balanced by its frame."""
     assembled = pantograph.assemble(spatial=system.spatial, height=system.contact_wire_height)
+    if assembled.bending:
+        raise InputError(
+            f"{pantograph.name}: bending_frequencies: strips that bend do not run with Exudyn; take the"
+            " method 'nonlinear' or 'linearised', or leave them out"
+        )
     axes, mechanism = system.axes, assembled.mechanism
     made = assembled.beside_bars() if mechanism else assembled
     nominal = system.contact_wire_height * np.eye(3)[axes - 1]
-    bodies, coordinates, roll_places = [], [], []
-    for body in made.bodies:
-        number, node = _add_body(mbs, body, nominal, axes - 1, ground)
-        bodies.append(number)
-        coordinates.append((node, 0 if body.inertia is None else _HEAVE))
-        if body.inertia is not None:
-            roll_places.append((node, _ROLL))
-    coordinates += roll_places
+    bodies, coordinates = _add_bodies(mbs, made, nominal, axes - 1, ground)
     frame = add_frame(mbs, mechanism, coordinates[made.guide][0]) if mechanism else None
     on = [_coordinate_marker(mbs, place) for place in coordinates]
     loads = [
         (int(mbs.AddLoad(eii.LoadCoordinate(markerNumber=on[at], load=0.0))), int(at))
-        for at in np.flatnonzero(assembled.load + assembled.base_stiffness + assembled.base_damping)
+        for at in np.flatnonzero(_loaded(pantograph, assembled))
     ]
     joints, grounded = _add_joints(mbs, made, on, ground)
     middles = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body)) for body in bodies]
-    strips = [_strip_marker(mbs, bodies, strip, nominal) for strip in assembled.strips]
+    strips = [_strip_marker(mbs, bodies, assembled, strip, nominal) for strip in assembled.strips]
     law = _Law(mbs, axes - 1, assembled.contact)
     contacts = []
     for strip, middle in zip(assembled.strips, strips, strict=True):
         rolls = strip.body in assembled.rolling  # then it meets each wire at another place
         for wire in range(len(wires)):
-            marker = _strip_marker(mbs, bodies, strip, nominal) if rolls else middle
+            marker = _strip_marker(mbs, bodies, assembled, strip, nominal) if rolls else middle
             contacts.append(law.connect(wires, wire, strip.ahead, marker, strip, rolls=rolls))
     return PantographParts(
         record=pantograph,
@@ -142,6 +142,16 @@ def add_pantograph(
         masses=[int(marker) for marker in middles],
         frame=frame,
     )
+
+
+def _loaded(pantograph: Any, assembled: Substructure) -> NDArray[np.bool_]:
+    """Which coordinates a load may act on: of the uplift, of the air on each mass, of a base that rises."""
+    found: NDArray[np.bool_] = (
+        (assembled.load != 0) | (assembled.base_stiffness != 0) | (assembled.base_damping != 0)
+    )
+    if len(getattr(pantograph, "airs", ())) > 1:
+        found[: len(assembled.bodies)] = True
+    return found
 
 
 def add_own_pantograph(
@@ -167,18 +177,38 @@ def add_own_pantograph(
     return PantographParts(record, None, [], [], [], [], [], markers, contacts, [int(m) for m in masses])
 
 
+def _add_bodies(
+    mbs: exu.MainSystem, made: Substructure, nominal: Floats, up: int, ground: int
+) -> tuple[list[int], list[tuple[int, int]]]:
+    """Numbers of the bodies, and for each coordinate its node, and which of that node's it is."""
+    bodies, heights, rolls, pitches = [], [], [], []
+    for body in made.bodies:
+        number, node = _add_body(mbs, body, nominal, up, ground)
+        bodies.append(number)
+        heights.append((node, up if _turns(body) else 0))
+        rolls += [(node, _ROLL)] if body.inertia is not None else []
+        pitches += [(node, _PITCH[up])] if body.pitch_inertia is not None else []
+    return bodies, [*heights, *rolls, *pitches]
+
+
+def _turns(body: Body) -> bool:
+    return body.inertia is not None or body.pitch_inertia is not None
+
+
 def _add_body(mbs: exu.MainSystem, body: Body, nominal: Floats, up: int, ground: int) -> tuple[int, int]:
-    """Numbers of a point mass that heaves, or of a rigid body that heaves and rolls, and of its node."""
-    if body.inertia is None:
+    """Numbers of a point mass that heaves, or of a rigid body that rolls or pitches, too, and of its node."""
+    if not _turns(body):
         node = mbs.AddNode(eii.Node1D(referenceCoordinates=[0.0]))
         point = eii.ObjectMass1D(
             mass=body.mass, nodeNumber=node, referencePosition=list(nominal), referenceRotation=_TO_UP[up]
         )
         return int(mbs.AddObject(point)), int(node)
     node = mbs.AddNode(eii.NodeRigidBodyRxyz(referenceCoordinates=[*nominal, 0, 0, 0]))
-    inertia = [body.inertia] * 3 + [0.0] * 3
+    about_track, about_axle = body.inertia or _ANY, body.pitch_inertia or _ANY
+    inertia = [about_track, about_axle, about_axle, 0.0, 0.0, 0.0]
     rigid = mbs.AddObject(eii.ObjectRigidBody(nodeNumber=node, mass=body.mass, inertia=inertia))
-    for which in {*range(6)} - {_HEAVE, _ROLL}:
+    free = {up} | ({_ROLL} if body.inertia else set()) | ({_PITCH[up]} if body.pitch_inertia else set())
+    for which in sorted({*range(6)} - free):
         markers = [ground, _coordinate_marker(mbs, (int(node), which))]
         mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=markers))
     return int(rigid), int(node)
@@ -189,10 +219,18 @@ def _coordinate_marker(mbs: exu.MainSystem, place: tuple[int, int]) -> int:
     return int(mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=which)))
 
 
-def _strip_marker(mbs: exu.MainSystem, bodies: list[int], strip: Strip, nominal: Floats) -> int:
-    """On the strip's body, or where there is none at the nominal contact wire height."""
+def _strip_marker(
+    mbs: exu.MainSystem, bodies: list[int], made: Substructure, strip: Strip, nominal: Floats
+) -> int:
+    """On the strip's body, or where there is none at the nominal contact wire height.
+
+    In space a body turns the other way about the axle than pitch counts: its front is behind.
+    """
     if strip.body is not None:
-        return int(mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[strip.body])))
+        turned = 1.0 if nominal[1] else -1.0
+        arm = turned * strip.ahead if strip.body in made.pitching else 0.0
+        marker = eii.MarkerBodyPosition(bodyNumber=bodies[strip.body], localPosition=[arm, 0.0, 0.0])
+        return int(mbs.AddMarker(marker))
     node = mbs.AddNode(eii.NodePointGround(referenceCoordinates=list(nominal)))
     return int(mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=node)))
 
@@ -209,8 +247,9 @@ def _add_joints(
         lower = ground if joint.lower == BASE else on[joint.lower]
         springs = [(on[joint.upper], lower, 1.0)]
         if joint.upper in assembled.rolling:
-            roll = on[len(assembled.bodies) + assembled.rolling.index(joint.upper)]
-            springs.append((roll, ground, joint.lever**2))
+            springs.append((on[assembled.roll_of(joint.upper)], ground, joint.lever**2))
+        if joint.upper in assembled.pitching:
+            springs.append((on[assembled.pitch_of(joint.upper)], ground, joint.reach**2))
         for upper, end, factor in springs:
             spring = eii.ObjectConnectorCoordinateSpringDamper(
                 markerNumbers=[upper, end],
@@ -296,7 +335,8 @@ class Contacts:
         mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
         if contact.rolls:
             lateral = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Position, place)[1]
-            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [0, float(lateral), 0])
+            arm = mbs.GetMarkerParameter(contact.strip_marker, "localPosition")[0]
+            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [float(arm), float(lateral), 0])
         height, climb = path.surface(position)
         if path.irregularity:
             mbs.SetObjectParameter(contact.connector, "offset", list(height * np.eye(3)[self._up]))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.layout import GRAVITY, InputError
-from catenary_fe.layout.substructure import Mechanism
+from catenary_fe.layout.bodies import Mechanism
 from catenary_fe.theory.linkage import Bar, Linkage
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,8 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout.substructure import DAMPER, FRICTION, STOP, ContactLaw, Joint, Substructure
+from catenary_fe.layout.bodies import DAMPER, FRICTION, STOP, ContactLaw, Joint
+from catenary_fe.layout.substructure import Substructure
 
 Floats = NDArray[np.float64]
 

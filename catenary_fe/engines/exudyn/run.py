@@ -106,7 +106,8 @@ def _start(model: ExudynModel, case: RunCase, uplifts: Floats, bases: Bases, *, 
         placed = [replace(p, base=base) for p, base in zip(placed, bases, strict=False)]
         moved, placed = static_contact(system, placed)
         q[: system.dof.size] = moved
-        for parts, where in zip(own, placed, strict=True):
+        for n, (parts, where) in enumerate(zip(own, placed, strict=True)):
+            model.pantographs[n] = replace(parts, substructure=where.body)  # as at this speed
             q[parts.index(mbs)] = where.heights
             if parts.frame:
                 parts.frame.follow(mbs, q)

@@ -161,7 +161,7 @@ class _Head:
     def __init__(self, body: Substructure, uplift: float, step: float) -> None:
         n, M = body.size, body.mass
         self._body, self._uplift = body, uplift
-        self._row = body.heave(body.strips[0])
+        self._row = body.row(body.strips[0])
         inverse = np.diag(1 / np.diag(M))
         still = np.zeros(n)
         system = np.block(
@@ -205,7 +205,7 @@ class _Head:
 
 
 def _head(pantograph: AnyPantograph, speed: float, step: float) -> _Head:
-    body = pantograph.assemble(spatial=False)
+    body = pantograph.assemble(spatial=False, speed=speed)
     if len(body.strips) > 1:
         raise InputError(
             f"{pantograph.name}: head.strips = 2: a modal run has one point of contact; leave the head out,"

@@ -9,7 +9,7 @@ from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.kernels import take_one
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Motion
 from catenary_fe.engines.pantograph_laws import frame_at
-from catenary_fe.layout.substructure import DAMPER, FRAME, FRICTION
+from catenary_fe.layout.bodies import DAMPER, FRAME, FRICTION
 
 
 @compiled
