@@ -215,3 +215,12 @@ class Mechanism:
     def angle(self, risen: float) -> float:
         """[rad] of the lower arm with the apex so many metres above its place at rest."""
         return self.linkage.angle_at(self.apex + risen)
+
+    def push(self, risen: float) -> float:
+        """[N] up of the bars by themselves, driven by the torque, at their apex there; 0 with a cam."""
+        if self.torque is None:
+            return 0.0
+        angle, torque = self.angle(risen), self.torque
+        if isinstance(torque, tuple):
+            torque = float(np.interp(angle, *np.transpose(torque)))
+        return float(torque / abs(self.linkage.rise(angle)) - self.linkage.weight(angle))

@@ -94,8 +94,8 @@ class LinkagePantograph(PushedPantograph):
 
     Its motion is that of the head's masses and the frame's apex, whose mass, weight and drive change with the
     height, exactly as the mechanism says (virtual work; kinetic energy). The apex's small drift along the
-    track is part of the kinetic energy, and of nothing else. Damper, friction and bellows act as they do at
-    the height of the line's contact wire.
+    track is part of the kinetic energy, and of nothing else. Damper, friction and bellows act as they do
+    where it stands under its static force.
     """
 
     kind = "linkage"
@@ -112,7 +112,7 @@ class LinkagePantograph(PushedPantograph):
     pivot_height: Positive
     """[m] of the base pivot above the rail"""
     head_height: NonNegative = 0.0
-    """[m] of the strips above the apex, the head's springs without force"""
+    """[m] of the strips above the apex, the head's springs bearing the head alone"""
     working_height: Positive = 5.3
     """[m] of the contact wire above the rail, at which the pantograph by itself is shown"""
     reach: tuple[Number, Number] | None = None
@@ -175,7 +175,7 @@ class LinkagePantograph(PushedPantograph):
         )
 
     def _apex(self, height: float) -> float:
-        """[m] of the apex above the base pivot, the contact wire at a height [m], springs without force."""
+        """[m] of the apex above the base pivot, the contact wire at a height [m], its force away."""
         return height - self.pivot_height - self.head_height
 
     @property
@@ -252,11 +252,12 @@ class LinkagePantograph(PushedPantograph):
         bodies, joints, strips = self.panhead.on_springs(self.head_stages, on_base=False, spatial=spatial)
         frame = len(bodies)
         table, force_slope = self._frame_law(apex, angle)
-        joints.append(self._frame_joint(frame, apex, angle, force_slope))
+        standing = self._standing(apex, speed)
+        joints.append(self._frame_joint(frame, apex, standing, force_slope))
         bodies.append(Body(float(self.linkage.mass(angle))))
         up = list(lifted(self.shares(speed), frame + 1, len(self.head_stages) + 1))
         if self.drive.bellows_stiffness and self.drive.lag:
-            stiffness = self.drive.bellows_stiffness / float(self.linkage.rise(angle)) ** 2
+            stiffness = self.drive.bellows_stiffness / float(self.linkage.rise(standing)) ** 2
             bodies.append(Body(_BELLOWS))
             up.append(0.0)
             joints.append(Joint(frame, frame + 1, stiffness, 0.0))
@@ -273,6 +274,12 @@ class LinkagePantograph(PushedPantograph):
             frame=Law(FRAME, tuple(row), *table),
             mechanism=self._mechanism(apex),
         )
+
+    def _standing(self, apex: float, speed: float | None) -> float:
+        """[rad] of the lower arm with the head's springs pressed by the static force, from an apex [m]."""
+        soft = sum(1 / stage.stiffness for stage in self.head_stages if stage.stiffness)
+        highest = self._heights()[-1]
+        return self.linkage.angle_at(float(min(apex + soft * self.static_uplift(speed or 0.0), highest)))
 
     def _mechanism(self, apex: float) -> Mechanism:
         torque = self.drive.torque

@@ -1,5 +1,7 @@
 """A pantograph whose frame is a mechanism: against virtual work, its lumped equivalent, and rigid bodies."""
 
+from importlib import util
+
 import numpy as np
 import pytest
 
@@ -179,3 +181,23 @@ def test_a_wire_out_of_reach_and_a_drive_that_does_not_lift_are_refused(shape):
         cf.simulate(cf.find_form(low), [linkage()], speed=70.0)
     with pytest.raises(cf.InputError, match="drive, weight and air leave -"):
         cf.simulate(shape, [linkage(drive={"torque": 800.0})], speed=70.0)
+
+
+def test_bodies_and_joints_of_a_script(shape):
+    """The same frame by hand: the same force; what its damper adds is linear in its description alone."""
+    spec = util.spec_from_file_location("own_linkage", LAYOUTS.parent / "studies/own_linkage.py")
+    script = util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    script.TIME = cf.TimeSettings(step=2e-3)
+    short = shape.catenary.replace(spans=shape.catenary.spans[:3], supports=shape.catenary.supports[:4],
+                                   evaluated_spans=(2,))  # fmt: skip
+    line = cf.find_form(short)
+    for damper, apart in ((0.0, 1e-3), (700.0, 0.02)):
+        frame = script.FRAME.replace(damper={"up": damper, "down": damper})
+        described, own = (
+            run.data["contact_force"].values[0]
+            for run in (script.run(line, [frame], None), script.by_hand(line, frame))
+        )
+        assert np.std(own - described) < apart * np.std(described)
+    heavier = script.by_hand(line, frame.replace(apex_mass=7.0)).data["contact_force"].values[0]
+    assert np.std(heavier - own) > 0.02 * np.std(own)

@@ -1,8 +1,11 @@
 """What faults need: a short line, a finished run, commands as processes of their own, a disk that is full."""
 
+import os
 import shutil
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -58,9 +61,9 @@ def start():
         return started[-1]
 
     yield begun
-    for process in started:
-        if process.poll() is None:
-            process.kill()
+    for process in started:  # and its workers, which would hold the pipes for minutes
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
 
 

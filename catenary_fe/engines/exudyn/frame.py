@@ -39,6 +39,7 @@ class FrameParts:
     def follow(self, mbs: exu.MainSystem, q: Floats) -> None:
         """Put the bodies where the guide's coordinate asks for, in coordinates of the system."""
         risen = float(q[mbs.systemData.GetNodeLTGODE2(self.guide)[0]])
+        risen += self.mechanism.push(risen) / _GUIDE
         there, rest = (_places(self.mechanism, z) for z in (risen, 0.0))
         for node, now, before in zip(self.nodes, there, rest, strict=True):
             q[mbs.systemData.GetNodeLTGODE2(node)] = now - before
