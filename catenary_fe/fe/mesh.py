@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -122,7 +123,7 @@ class Mesh:
         """Number of the first stitch wire among all wires, whether there is one or not."""
         return self.contact_wires + self.messengers
 
-    @property
+    @cached_property
     def first_nodes(self) -> Integers:
         """Shape (wires + 1,): number of each wire's first node among all nodes, and their count."""
         return np.cumsum([0, *(wire.x.size for wire in self.wires)])

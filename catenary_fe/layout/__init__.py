@@ -24,7 +24,7 @@ from catenary_fe.layout.errors import CatenaryError, InputError, RunInterrupted,
 from catenary_fe.layout.files import layout_schema, load_catenary, load_pantograph, pantograph_schema
 from catenary_fe.layout.from_tables import catenary_from_tables
 from catenary_fe.layout.installed import Wear
-from catenary_fe.layout.line import Line, join_sections, read_catenary
+from catenary_fe.layout.line import Line, join_sections, read_catenary, recorded_catenary
 from catenary_fe.layout.linkage import LinkagePantograph
 from catenary_fe.layout.measured import MeasuredWire, read_measured
 from catenary_fe.layout.overlap import Overlap
@@ -36,6 +36,7 @@ from catenary_fe.layout.pantograph import (
     ElasticPantograph,
     Pantograph,
     recorded_pantograph,
+    recorded_pantographs,
 )
 from catenary_fe.layout.parameters import GRAVITY
 from catenary_fe.layout.parts import (
@@ -117,7 +118,9 @@ __all__ = [
     "pantograph_schema",
     "read_catenary",
     "read_measured",
+    "recorded_catenary",
     "recorded_pantograph",
+    "recorded_pantographs",
     "study_schema",
     "target_mean_force",
 ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, Self
 
@@ -318,3 +319,9 @@ def _served_before(section: Catenary, following: Catenary, shared: int) -> int:
 def read_catenary(record: dict[str, Any]) -> Catenary:
     """A catenary, or a line of several sections, as :meth:`model_dump` wrote it."""
     return (Line if "sections" in record else Catenary).model_validate(record)
+
+
+@lru_cache(maxsize=4)
+def recorded_catenary(text: str) -> Catenary:
+    """As :func:`read_catenary`, from JSON; runs are asked for it again and again."""
+    return read_catenary(json.loads(text))

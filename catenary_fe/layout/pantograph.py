@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
@@ -228,6 +230,12 @@ def kind_of(record: dict[str, Any]) -> type[DescribedPantograph]:
 def recorded_pantograph(record: dict[str, Any]) -> AnyPantograph:
     """A pantograph from its record in a result. Raises pydantic's ValidationError for what is none."""
     return (AttachedPantograph if "attached" in record else kind_of(record)).model_validate(record)
+
+
+@lru_cache(maxsize=4)
+def recorded_pantographs(text: str) -> tuple[AnyPantograph, ...]:
+    """Pantographs from JSON; runs are asked for them again and again."""
+    return tuple(map(recorded_pantograph, json.loads(text)))
 
 
 def check_pantographs(pantographs: object, *, least: int = 1) -> None:

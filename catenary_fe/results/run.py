@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.layout import AnyPantograph, Catenary, InputError, read_catenary, recorded_pantograph
+from catenary_fe.layout import AnyPantograph, Catenary, InputError, recorded_catenary, recorded_pantographs
 from catenary_fe.layout.arguments import checked, span_numbers, whole
 from catenary_fe.layout.conditions import Conditions
 from catenary_fe.layout.parameters import changed_by_copy
@@ -68,7 +68,7 @@ class Run:
     @property
     def catenary(self) -> Catenary:
         """The catenary that was run on."""
-        return read_catenary(json.loads(self.data.attrs["catenary"]))
+        return recorded_catenary(self.data.attrs["catenary"])
 
     @property
     def conditions(self) -> Conditions | None:
@@ -79,7 +79,7 @@ class Run:
     @property
     def pantographs(self) -> tuple[AnyPantograph, ...]:
         """The pantographs that ran, in the order of the data."""
-        return tuple(map(recorded_pantograph, json.loads(self.data.attrs["pantographs"])))
+        return recorded_pantographs(self.data.attrs["pantographs"])
 
     @property
     def evaluated_spans(self) -> tuple[int, ...]:

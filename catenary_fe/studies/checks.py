@@ -148,17 +148,24 @@ def plan_run(
     positions: Sequence[float] | None,
     time: TimeSettings,
     runs: Sequence[AnyPantograph] | None = None,
+    *,
+    short: bool = False,
 ) -> RunCase:
     """A run from near the first support to as near to the last one, with what to know before trusting it.
 
     positions : [m] along the line at the start; unset (for one pantograph): near the first support
     runs : all pantographs on the line, with those that a script attached; unset: the same
+    short : whether it ends as soon as all pantographs have passed the span behind the last evaluated one
 
     Raises InputError for an unlikely speed, a run that does not fit on the line, a wire that leaves a head.
     """
     check_speed(speed)
     runs = pantographs if runs is None else runs
     start, distance = _route(shape.catenary, len(runs), positions)
+    if short:
+        supports = shape.catenary.support_positions
+        behind = min(max(shape.catenary.spans_to_evaluate) + 1, supports.size - 1)
+        distance = min(distance, float(supports[behind] - start.min()))
     check_heads(shape, pantographs, float(start.min()), float(start.max()) + distance)
     return RunCase(runs, speed, start, distance, run_warnings(shape, pantographs, speed, start, time))
 

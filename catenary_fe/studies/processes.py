@@ -48,6 +48,13 @@ def deadly(scheduler: str | None) -> tuple[type[Exception], ...]:
     return TerminatedWorkerError, KilledWorker
 
 
+def _end_workers() -> None:
+    """At once: they would go on with their cases, and hold what they inherited for minutes."""
+    from joblib.externals.loky import get_reusable_executor
+
+    get_reusable_executor(reuse=True).shutdown(wait=False, kill_workers=True)
+
+
 @contextmanager
 def processes_of(scheduler: str | None) -> Iterator[None]:
     """Let joblib work on this machine, or on the cluster at an address. Raises InputError without one."""
@@ -55,7 +62,11 @@ def processes_of(scheduler: str | None) -> Iterator[None]:
 
     if scheduler is None:
         with joblib.parallel_config("loky", initializer=_leave_interrupts):
-            yield
+            try:
+                yield
+            except (KeyboardInterrupt, GeneratorExit):
+                _end_workers()
+                raise
         return
 
     try:

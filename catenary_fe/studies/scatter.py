@@ -112,6 +112,9 @@ def run_scatter(  # long by what it documents
     retry : run cases again that failed
     progress : called with the share done, 0 to 1
 
+    Linearised runs end a span behind the last evaluated one: bands are those of the evaluated spans and their
+    supports.
+
     A sample that cannot be built or run is counted, and said, and left out. Raises InputError where nothing
     scatters, a place does not exist, or no sample can be built.
     """
@@ -128,7 +131,7 @@ def run_scatter(  # long by what it documents
     cases = [*nominal, *(case for cube in cubes for case in plan.cases(cube))]
     _check_built(nominal, cases)
     settings = SweepSettings(
-        method=method, time=time or TimeSettings(), mesh=mesh or MeshSettings(), keep_force=True
+        method=method, time=time or TimeSettings(), mesh=mesh or MeshSettings(), keep_force=True, short=True
     )
     records = run_sweep(
         cases, settings, folder, jobs=jobs, scheduler=scheduler, retry=retry,

@@ -45,6 +45,7 @@ class SweepSettings:
     """What all cases of a sweep have in common.
 
     keep_force : records have the filtered contact force along the evaluated spans, too, as ``force``
+    short : linearised runs end a span behind the last evaluated one
     """
 
     method: Method = "linearised"
@@ -52,6 +53,7 @@ class SweepSettings:
     time: TimeSettings = field(default_factory=TimeSettings)
     filter: FilterKind = "causal"
     keep_force: bool = False
+    short: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -283,7 +285,8 @@ def _run_together(cases: Sequence[SweepCase], settings: SweepSettings) -> list[R
     for case in cases:
         try:
             positions = case.positions or None
-            good.append(plan_run(line.shape, case.pantographs, case.speed, positions, settings.time))
+            own = line.shape, case.pantographs, case.speed, positions, settings.time
+            good.append(plan_run(*own, short=settings.short))
             records.append({})
         except CatenaryError as error:
             records.append(_failed(error))
