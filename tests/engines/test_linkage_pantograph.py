@@ -201,3 +201,18 @@ def test_bodies_and_joints_of_a_script(shape):
         assert np.std(own - described) < apart * np.std(described)
     heavier = script.by_hand(line, frame.replace(apex_mass=7.0)).data["contact_force"].values[0]
     assert np.std(heavier - own) > 0.02 * np.std(own)
+
+
+@pytest.mark.parametrize("method", ["nonlinear", "linearised"])
+def test_a_roof_that_moves_is_that_under_the_lumped_equivalent(shape, method):
+    """Two centimetres once every ten metres; on a roof at rest the force is another one."""
+    x = np.arange(0.0, 241.0, 0.25)
+    roof = np.column_stack([x, 0.02 * np.sin(2 * np.pi * x / 10)]).tolist()
+    day = cf.Conditions(base=cf.BaseMotion(height=roof))
+    given = linkage()
+    moved, lumped, still = (
+        cf.simulate(shape, [head], speed=70.0, method=method, conditions=on).data["contact_force"].values[0]
+        for head, on in ((given, day), (lumped_of(given), day), (given, None))
+    )
+    assert np.std(moved - lumped) < 0.02 * np.std(lumped)
+    assert np.std(moved - still) > 0.1 * np.std(still)
