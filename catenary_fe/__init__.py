@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         CatenaryError,
         Conditions,
         ContactWireIrregularity,
+        DesignVariable,
         Distribution,
         Drawn,
         Dropper,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
         InputError,
         Line,
         LinkagePantograph,
+        Objective,
         Overlap,
         Panhead,
         Pantograph,
@@ -99,6 +101,7 @@ if TYPE_CHECKING:
     )
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import Session, modal_run, simulate, solve_modes, stepping
+    from catenary_fe.studies.design import DesignProblem, Evaluation, Optimum, optimise
     from catenary_fe.studies.scatter import Scatter, run_scatter
     from catenary_fe.studies.single_wire import run_wire
 
@@ -108,6 +111,7 @@ _ROOMS = {
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
     "engines.exudyn": ("ExudynModel", "exudyn_model"),
+    "studies.design": ("DesignProblem", "Evaluation", "Optimum", "optimise"),
     "studies.scatter": ("Scatter", "run_scatter"),
     "studies.single_wire": ("run_wire",),
     "statics": (
@@ -154,6 +158,7 @@ _ROOMS = {
         "CatenaryError",
         "Conditions",
         "ContactWireIrregularity",
+        "DesignVariable",
         "Distribution",
         "Dropper",
         "Effect",
@@ -164,6 +169,7 @@ _ROOMS = {
         "InputError",
         "Line",
         "LinkagePantograph",
+        "Objective",
         "Overlap",
         "RunInterrupted",
         "SectionEnd",
@@ -209,6 +215,8 @@ __all__ = [
     "Conditions",
     "ContactWireIrregularity",
     "Criterion",
+    "DesignProblem",
+    "DesignVariable",
     "Distribution",
     "Drawn",
     "Dropper",
@@ -216,6 +224,7 @@ __all__ = [
     "ElasticPantograph",
     "Elasticity",
     "Equipment",
+    "Evaluation",
     "ExudynModel",
     "ForceStatistics",
     "Gusts",
@@ -230,6 +239,8 @@ __all__ = [
     "MeshSettings",
     "ModalRun",
     "Modes",
+    "Objective",
+    "Optimum",
     "Overlap",
     "Panhead",
     "Pantograph",
@@ -282,6 +293,7 @@ __all__ = [
     "load_run",
     "load_study",
     "modal_run",
+    "optimise",
     "pantograph_response",
     "read_line_test",
     "read_measured",

@@ -15,6 +15,7 @@ from catenary_fe.cli.cases import cases
 from catenary_fe.cli.design import form, info, modes, static
 from catenary_fe.cli.fmu import fmu
 from catenary_fe.cli.layouts import layout
+from catenary_fe.cli.optimise import optimise
 from catenary_fe.cli.pantograph import pantograph
 from catenary_fe.cli.program import completion, paper, schema, selfcheck, validate
 from catenary_fe.cli.run import run
@@ -66,6 +67,7 @@ _SHORT_HELP = {
     modes: "Eigenfrequencies and mode shapes.",
     run: "Run pantographs along a layout.",
     sweep: "Runs over speeds, pantographs and values of a layout.",
+    optimise: "Values of a line that make a figure the best.",
     scatter: "Samples of values that scatter, and what matters.",
     fmu: "The line for a co-simulation, as an FMU.",
     report: "One HTML page of a run, to read and hand on.",

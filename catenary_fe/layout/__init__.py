@@ -51,7 +51,7 @@ from catenary_fe.layout.parts import (
 )
 from catenary_fe.layout.receptance import ReceptancePantograph
 from catenary_fe.layout.rules import layout_warnings
-from catenary_fe.layout.study import Study, load_study, study_schema
+from catenary_fe.layout.study import DesignVariable, Objective, Study, load_study, study_schema
 from catenary_fe.layout.terminations import ends_in_words
 from catenary_fe.layout.writer import layout_text
 
@@ -67,6 +67,7 @@ __all__ = [
     "Conditions",
     "ContactWireIrregularity",
     "DescribedPantograph",
+    "DesignVariable",
     "Distribution",
     "Drawn",
     "Dropper",
@@ -79,6 +80,7 @@ __all__ = [
     "Line",
     "LinkagePantograph",
     "MeasuredWire",
+    "Objective",
     "Overlap",
     "Panhead",
     "Pantograph",

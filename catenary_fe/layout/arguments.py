@@ -145,6 +145,8 @@ _OBJECTS = {  # by the name of their class: what they are, and where to get one
     "LineTestComparison": ("a comparison with a line test", "compare_with_line_test makes one"),
     "PantographResponse": ("the response of a pantograph", "pantograph_response(pantograph) gives it"),
     "Study": ("a Study", "load_study reads a file"),
+    "DesignProblem": ("a design problem", "DesignProblem(study, folder=...) makes one"),
+    "Optimum": ("what optimise found", "optimise(problem) gives it"),
     "Modes": ("modes of a line", "give solve_modes(shape)"),
     "MeshSettings": ("MeshSettings", "give MeshSettings(contact_wire_element=...), or leave it out"),
     "TimeSettings": ("TimeSettings", "give TimeSettings(step=...), or leave it out"),

@@ -1,12 +1,13 @@
-"""Files of studies: a line, pantographs and speeds, and what of it scatters."""
+"""Files of studies: a line, pantographs and speeds, what of it scatters, and what is to be designed."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from catenary_fe.layout.arguments import checked
 from catenary_fe.layout.current_collection import PowerSystem
@@ -25,28 +26,76 @@ from catenary_fe.layout.parameters import (
 from catenary_fe.layout.toml import read_toml
 
 
-def _by_place(given: Any) -> Any:
-    """Distributions by place; each fault with its place, which is no key that the schema knows."""
-    if not isinstance(given, dict):
-        return given
-    found, faults = {}, []
-    for place, value in given.items():
-        if isinstance(value, dict) and any(isinstance(inner, dict) for inner in value.values()):
-            faults.append(f'{place}: write the whole place in quotes, such as "{place}.{next(iter(value))}"')
-            continue
-        if not isinstance(value, dict | Distribution):
-            faults.append(f"{place} = {shorten(value)}: must be a table, such as {{ normal = 0.004 }}")
-            continue
-        try:
-            found[place] = Distribution.model_validate(value)
-        except ValidationError as error:
-            faults += problem_lines(error, Distribution, where=str(place))
-    refuse(faults)
-    return found
+class DesignVariable(Parameters):
+    """A value that is looked for, between two bounds."""
+
+    between: tuple[Number, Number]
+    """[of the value] lowest and highest one"""
+    whole: Annotated[bool, Field(strict=True)] = False
+    """true: whole numbers alone, which only the global search finds"""
+    apart: Annotated[bool, Field(strict=True)] = False
+    """true: each member of the place by itself; false: one value for all of them"""
+    evenly: Positive | None = None
+    """[m] of a place `span.*.droppers`: the value is a number of droppers, the first and the last this far
+    from the supports, the others evenly between"""
+
+    @model_validator(mode="after")
+    def _bounds_rise(self) -> Self:
+        low, high = self.between
+        if low >= high:
+            raise ValueError(f"between = [{low:g}, {high:g}]: the first bound must be below the second one")
+        if self.evenly is not None and low < 1:
+            raise ValueError(f"between = [{low:g}, {high:g}]: at least one dropper hangs in a span")
+        return self
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether only whole numbers count."""
+        return self.whole or self.evenly is not None
+
+
+class Objective(Parameters):
+    """What a design is judged by: the smallest value of a figure is the best, of minima the largest."""
+
+    figure: Literal[
+        "std_N", "max_N", "min_N", "statistical_max_N", "statistical_min_N", "max_support_uplift_mm",
+        "contact_loss_percent",
+    ] = "std_N"  # fmt: skip
+    """of the contact force, or the largest uplift at a support"""
+    over: Literal["worst", "mean"] = "worst"
+    """over speeds, pantographs and samples"""
+    samples: Annotated[int, Field(strict=True, ge=0)] = 0
+    """of what scatters, beside the line as it is drawn; the same for each design"""
+
+
+def _by_place(model: type[Parameters], example: str) -> Callable[[Any], Any]:
+    """Tables by place; each fault with its place, which is no key that the schema knows."""
+
+    def read(given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        found, faults = {}, []
+        for place, value in given.items():
+            if isinstance(value, dict) and any(isinstance(inner, dict) for inner in value.values()):
+                faults.append(
+                    f'{place}: write the whole place in quotes, such as "{place}.{next(iter(value))}"'
+                )
+                continue
+            if not isinstance(value, dict | model):
+                faults.append(f"{place} = {shorten(value)}: must be a table, such as {{ {example} }}")
+                continue
+            try:
+                found[place] = model.model_validate(value)
+            except ValidationError as error:
+                faults += problem_lines(error, model, where=str(place))
+        refuse(faults)
+        return found
+
+    return read
 
 
 class Study(Parameters):
-    """A line, pantographs and speeds, and what of it scatters."""
+    """A line, pantographs and speeds, what of it scatters, and what is to be designed."""
 
     model_config = ConfigDict(title="catenary_fe study")
 
@@ -71,8 +120,16 @@ class Study(Parameters):
     """system by whose limits each case is judged; unset: none"""
     seed: Annotated[int, Field(strict=True, ge=0)] = 1
     """of the random numbers: the same seed, the same samples"""
-    scatter: Annotated[dict[Text, Distribution], BeforeValidator(_by_place)] = Field(default_factory=dict)
+    scatter: Annotated[
+        dict[Text, Distribution], BeforeValidator(_by_place(Distribution, "normal = 0.004"))
+    ] = Field(default_factory=dict)
     """how values scatter, by their place as with `sweep --vary`; `*` stands for all members of a list"""
+    design: Annotated[
+        dict[Text, DesignVariable], BeforeValidator(_by_place(DesignVariable, "between = [15e3, 27e3]"))
+    ] = Field(default_factory=dict)
+    """which values are looked for, by their place"""
+    objective: Objective = Objective()
+    """what a design is judged by; its limits are the criteria"""
 
 
 @checked

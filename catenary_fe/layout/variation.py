@@ -47,6 +47,17 @@ class Variable:
             self.conditions_record = conditions_record(conditions)
             one_of_a_run(load_conditions(conditions), conditions)
 
+    def changed(self, values: dict[str, Any]) -> Variable:
+        """The same files with values of the layout and the conditions replaced. Raises InputError."""
+        found = copy.copy(self)
+        found.record, found.conditions_record = map(copy.deepcopy, (self.record, self.conditions_record))
+        line = {place: v for place, v in values.items() if not kind_of(place)}
+        _changed(found.record, str(self.path), line, LayoutFile)
+        day = _of(CONDITIONS, values)
+        _changed(found.conditions_record, self._conditions_path, day, Conditions)
+        found._has_conditions = self._has_conditions or bool(day)
+        return found
+
     def catenary(self, values: dict[str, Any]) -> Catenary:
         """The catenary with these values; keys of pantograph and conditions are left out.
 

@@ -123,6 +123,11 @@ def run_scatter(  # long by what it documents
         one_of("sampling", sampling, get_args(Sampling))
     if sensitivity and sampling == "latin-hypercube":
         raise InputError("sampling: sensitivity takes two Sobol' samples; leave latin-hypercube out")
+    if not study.scatter:
+        raise InputError(
+            "scatter: nothing scatters; write places and distributions into the study's [scatter], such as"
+            ' "contact_wire.tension" = { relative_normal = 0.02 }'
+        )
     plan = Plan(study)
     nominal, cubes = plan.nominal(), _cubes(plan, samples, sensitivity, sampling or _usual(sensitivity))
     count = plan.per_sample * (1 + samples * len(cubes))

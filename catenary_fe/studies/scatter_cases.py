@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,16 +48,17 @@ class Input:
 
 
 class Plan:
-    """What scatters in a study. Raises InputError for files and places that do not exist."""
+    """What scatters in a study. Raises InputError for files and places that do not exist.
 
-    def __init__(self, study: Study) -> None:
-        if not study.scatter:
-            raise InputError(
-                "scatter: nothing scatters; write places and distributions into the study's [scatter], such"
-                ' as "contact_wire.tension" = { relative_normal = 0.02 }'
-            )
-        self.study = study
-        self._variable = Variable(study.layout, study.conditions)
+    variable : line and conditions; unset: those of the study's files
+    heads : values of the pantographs that are others than those of their files, by place
+    """
+
+    def __init__(
+        self, study: Study, variable: Variable | None = None, heads: Mapping[str, Any] | None = None
+    ) -> None:
+        self.study, self._heads = study, dict(heads or {})
+        self._variable = variable or Variable(study.layout, study.conditions)
         self._lines: dict[str, tuple[Catenary, Conditions | None]] = {}
         self._line({})  # its faults come before those of places
         self.inputs: list[Input] = []
@@ -121,7 +122,7 @@ class Plan:
             shown = self._shown(of_line, of_head, name)
             error: InputError | None = None
             try:
-                (line, day), head = self._line(of_line), varied_pantograph(name, of_head)
+                (line, day), head = self._line(of_line), varied_pantograph(name, self._heads | of_head)
             except InputError as fault:
                 error = fault
             for speed in self.study.speed_kmh:

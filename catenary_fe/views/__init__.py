@@ -8,6 +8,7 @@ from catenary_fe.views.comparison import (
     plot_sweep_uplift,
     plot_uplift_comparison,
 )
+from catenary_fe.views.design import plot_design
 from catenary_fe.views.dxf import write_dxf
 from catenary_fe.views.film import film
 from catenary_fe.views.layout import plot_layout, plot_plan
@@ -34,7 +35,7 @@ from catenary_fe.views.waves import plot_family, plot_run_waves, plot_space_time
 
 __all__ = [
     "film", "plot_cases", "plot_contact_force", "plot_contact_lateral", "plot_criteria",
-    "plot_dropper_forces", "plot_elasticity", "plot_energy",
+    "plot_design", "plot_dropper_forces", "plot_elasticity", "plot_energy",
     "plot_family", "plot_force_bands", "plot_force_comparison", "plot_force_spectrum", "plot_handover",
     "plot_layout", "plot_line_test",
     "plot_mode", "plot_pantograph", "plot_plan", "plot_run_waves", "plot_scatter", "plot_scatter_inputs",

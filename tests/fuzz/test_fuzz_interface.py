@@ -112,6 +112,8 @@ CALLS = {
     "run_scatter: sensitivity": (scattered("sensitivity"), ("x", 1, None, [], ARRAY)),
     "run_scatter: sampling": (scattered("sampling"), ("x", "", 3, [], THING, ARRAY)),
     "run_scatter: progress": (scattered("progress"), FUNCTION),
+    "optimise": (lambda g, b: cf.optimise(b), OBJECT),
+    "DesignProblem": (lambda g, b: cf.DesignProblem(b, folder="x"), OBJECT),
     "settle": (lambda g, b: cf.settle(b, cf.Conditions()), OBJECT),
     "settle: conditions": (lambda g, b: cf.settle(g.shape, b), (*OBJECT[:3], *OBJECT[4:], [3], [None])),
     "case_rows": (lambda g, b: cf.case_rows(b), OBJECT),
