@@ -15,6 +15,7 @@ from catenary_fe.engines.history import History, of_contacts, section_forces, wh
 from catenary_fe.engines.sections import Computed
 from catenary_fe.fe.contact import BaseLine, Contact, ContactPath, PlacedPantograph, contacts_of
 from catenary_fe.fe.system import System
+from catenary_fe.layout.bodies import ORDER
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -48,7 +49,7 @@ class Sizes:
     points: int = 0
     laws: int = 0
     frames: int = 0
-    powers: int = 1
+    powers: int = ORDER
 
     @classmethod
     def of(cls, runs: Sequence[Sequence[PlacedPantograph]], wires: int, steps: int, every: int) -> Sizes:

@@ -6,8 +6,8 @@ import hashlib
 import json
 import logging
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib.metadata import version
@@ -140,14 +140,15 @@ def run_sweep(
             workers = workers_that_fit(needs, workers) if jobs <= 0 else workers
             check_memory(needs, "sweep", workers)
         tasks = _tasks(to_run, settings, workers)
-        for numbers, found in _spread(tasks, to_run, settings, workers, scheduler):
-            for i, record in zip(numbers, found, strict=True):
-                records[i] = record
-                if LOST not in record:
-                    store.write(to_run[i].key(settings), record)
-            done += len(numbers)
-            if progress:
-                progress(done, len(cases))
+        with closing(_spread(tasks, to_run, settings, workers, scheduler)) as finished:
+            for numbers, found in finished:
+                for i, record in zip(numbers, found, strict=True):
+                    records[i] = record
+                    if LOST not in record:
+                        store.write(to_run[i].key(settings), record)
+                done += len(numbers)
+                if progress:
+                    progress(done, len(cases))
         return [
             record | {"values": case.values} for case, record in zip(cases, records, strict=True) if record
         ]
@@ -197,7 +198,7 @@ def _spread(
     settings: SweepSettings,
     workers: int,
     scheduler: str | None,
-) -> Iterator[tuple[list[int], list[Record]]]:
+) -> Generator[tuple[list[int], list[Record]], None, None]:
     """Results of the tasks as they come.
 
     Where a worker process dies, what is not finished is tried again; where more of them die, with half as
@@ -209,9 +210,10 @@ def _spread(
         batch = left[:1] if alone else list(left)
         processes = max(2, workers) if deaths else min(workers, len(batch))  # one: in this process
         try:
-            for numbers, found in _in_parallel(batch, cases, settings, processes, scheduler):
-                left.remove(numbers)
-                yield numbers, found
+            with closing(_in_parallel(batch, cases, settings, processes, scheduler)) as finished:
+                for numbers, found in finished:
+                    left.remove(numbers)
+                    yield numbers, found
         except deadly(scheduler):
             deaths += 1
             _log.warning("a worker process died; what it was at is tried again")
@@ -229,7 +231,7 @@ def _in_parallel(
     settings: SweepSettings,
     processes: int,
     scheduler: str | None,
-) -> Iterator[tuple[list[int], list[Record]]]:
+) -> Generator[tuple[list[int], list[Record]], None, None]:
     from joblib import Parallel, delayed
 
     with processes_of(scheduler), manager_may_stumble():

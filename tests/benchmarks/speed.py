@@ -1,13 +1,15 @@
 """Real-time factors of all ways to run, in one process after another: compare them with each other only.
 
-``python tests/benchmarks/speed.py [--repeat 3] [--seconds 3]`` runs EN 50318:2002 at 300 km/h with steps of
-1 ms on the default mesh. Wall time depends on what else the machine does; the last column counts processor
-time, as if each core had nothing else to do. The best of the repetitions is printed.
+``python tests/benchmarks/speed.py [--repeat 3] [--seconds 3] [--json]`` runs EN 50318:2002 at 300 km/h with
+steps of 1 ms on the default mesh. Wall time depends on what else the machine does; the last column counts
+processor time, as if each core had nothing else to do. The best of the repetitions is printed. A design is a
+line with another tension, its form, a linearised run and its statistics.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import time
 from collections.abc import Callable
@@ -42,6 +44,15 @@ def exudyn(shape: cf.Shape, seconds: float) -> float:
     return seconds
 
 
+def stepping(shape: cf.Shape, seconds: float) -> float:
+    """A step a call, each with another force: what a controller costs."""
+    head = cf.library.pantograph("EN 50318:2002")
+    session = cf.stepping(shape, [head], speed=SPEED, positions=[START])
+    for n in range(round(seconds / STEP)):
+        session.step(uplift_force=120.0 + n % 2)
+    return seconds
+
+
 def linearised(line: LinearisedLine, cases: int = 1) -> float:
     head = cf.library.pantograph("EN 50318:2002")
     runs = line.run([RunCase([head], SPEED, np.array([START]), 580.0)] * cases)
@@ -59,6 +70,17 @@ def sweep_worker(cases: int) -> tuple[float, float]:
         linearised(_line, 2)
     begin = time.process_time()
     return (linearised(_line, cases), time.process_time() - begin) if cases else (0.0, 0.0)
+
+
+def design_worker(designs: int, first: int) -> float:
+    """Processor time of so many designs, none of which has the tension of another one."""
+    begin, line = time.process_time(), cf.load_catenary(LAYOUT)
+    head = cf.library.pantograph("EN 50318:2002")
+    for n in range(first, first + designs):
+        wire = line.contact_wire.replace(tension=20e3 + 7.0 * n)
+        shape = cf.find_form(line.replace(contact_wire=wire))
+        cf.simulate(shape, [head], speed=SPEED, method="linearised").contact_force_statistics()
+    return time.process_time() - begin
 
 
 def plain_scipy(shape: cf.Shape, seconds: float) -> float:
@@ -105,6 +127,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=2.0, help="simulated by the slow ones")
+    parser.add_argument("--json", action="store_true", help="print a table for programs")
     options = parser.parse_args()
     cores = os.cpu_count() or 1
     catenary = cf.load_catenary(LAYOUT)
@@ -114,11 +137,14 @@ def main() -> None:
     whole = NonlinearEngine(shape.system)
     nonlinear(whole, 0.01)
     setups = [_setup(catenary) for _ in range(options.repeat)]
-    print(f"{'set-up: form, statics, linearisation':44s} {min(s[0] for s in setups):6.2f} s wall", end="")
-    print(f" {min(s[1] for s in setups):6.2f} s processor")
-    print(f"{'real-time factor of':44s} {'wall':>8s} {'processor':>10s}")
+    found = {"setup_s": min(s[1] for s in setups)}
+    if not options.json:
+        print(f"{'set-up: form, statics, linearisation':44s} {min(s[0] for s in setups):6.2f} s wall", end="")
+        print(f" {min(s[1] for s in setups):6.2f} s processor")
+        print(f"{'real-time factor of':44s} {'wall':>8s} {'processor':>10s}")
     rows: dict[str, Callable[[], float]] = {
         "nonlinear run": lambda: nonlinear(whole, 6.96),
+        "steps of a session, one a call": lambda: stepping(shape, options.seconds),
         "nonlinear run by Exudyn's solver": lambda: exudyn(shape, options.seconds),
         "plain scipy, linear, droppers taut": lambda: plain_scipy(shape, options.seconds),
         "linearised run": lambda: linearised(line),
@@ -131,8 +157,11 @@ def main() -> None:
             simulated = run()
             factors = simulated / (time.perf_counter() - begin), simulated / (time.process_time() - used)
             best[name] = tuple(map(max, best[name], factors))
-    for name, (wall, processor) in best.items():
-        print(f"{name:44s} {wall:8.2f} {processor:10.2f}")
+    keys = "nonlinear", "stepping", "exudyn", "plain_scipy", "linearised", "linearised_slots"
+    for key, (name, (wall, processor)) in zip(keys, best.items(), strict=True):
+        found[f"{key}_real_time_factor"] = processor
+        if not options.json:
+            print(f"{name:44s} {wall:8.2f} {processor:10.2f}")
     with Parallel(n_jobs=cores, batch_size=1, pre_dispatch="all") as parallel:
         parallel(delayed(sweep_worker)(0) for _ in range(4 * cores))
         wall = processor = 0.0
@@ -141,7 +170,15 @@ def main() -> None:
             parts = parallel(delayed(sweep_worker)(CASES_A_CORE) for _ in range(cores))
             wall = max(wall, sum(p[0] for p in parts) / (time.perf_counter() - begin))
             processor = max(processor, sum(simulated / used for simulated, used in parts))
+        begin, each = time.perf_counter(), 5
+        parallel(delayed(design_worker)(each, each * n) for n in range(cores))
+        minute = 60 * cores * each / (time.perf_counter() - begin)
+    found |= {"sweep_real_time_factor": wall, "designs_per_minute": minute}
+    if options.json:
+        print(json.dumps(found, indent=1))
+        return
     print(f"{f'batched sweep on {cores} cores':44s} {wall:8.2f} {processor:10.2f}")
+    print(f"{f'designs a minute on {cores} cores':44s} {minute:8.1f}")
 
 
 def _setup(catenary: cf.Catenary) -> tuple[float, float]:

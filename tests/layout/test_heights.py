@@ -65,7 +65,14 @@ def test_a_line_that_is_lower_as_a_whole_is_the_same_line(pantograph):
     high, low = cf.find_form(line((5.5,) * 6)), cf.find_form(line((5.3,) * 6))
     for method in ("nonlinear", "linearised", "exudyn"):
         forces = [
-            cf.simulate(shape, [pantograph], speed=50.0, positions=[40.0], method=method)
+            cf.simulate(
+                shape,
+                [pantograph],
+                speed=50.0,
+                positions=[40.0],
+                method=method,
+                time=cf.TimeSettings(step=2e-3),
+            )
             .data["contact_force"]
             .values
             for shape in (high, low)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import exudyn as exu
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.exudyn.frame import FrameParts, add_frame
 from catenary_fe.engines.exudyn.laws import joint_law, push_only
 from catenary_fe.fe.system import System
-from catenary_fe.layout import AnyPantograph, AttachedPantograph, InputError
+from catenary_fe.layout import AerodynamicForce, AnyPantograph, AttachedPantograph, InputError
 from catenary_fe.layout.bodies import BASE, Body, ContactLaw, Strip
 from catenary_fe.layout.substructure import Substructure
 
@@ -49,6 +49,7 @@ class ContactParts:
     wire_marker, strip_marker : of the two points in contact
     rolls : whether the strip's point follows the wire sideways
     connector : object, the contact's spring and damper
+    arm : [m] of the strip's point along its body, which pitches
     """
 
     wire: int
@@ -58,6 +59,7 @@ class ContactParts:
     strip_marker: int
     rolls: bool
     connector: int
+    arm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -128,7 +130,8 @@ def add_pantograph(
         rolls = strip.body in assembled.rolling  # then it meets each wire at another place
         for wire in range(len(wires)):
             marker = _strip_marker(mbs, bodies, assembled, strip, nominal) if rolls else middle
-            contacts.append(law.connect(wires, wire, strip.ahead, marker, strip, rolls=rolls))
+            made_of = law.connect(wires, wire, strip.ahead, marker, strip, rolls=rolls)
+            contacts.append(replace(made_of, arm=_arm(assembled, strip, nominal)))
     return PantographParts(
         record=pantograph,
         substructure=assembled,
@@ -149,7 +152,7 @@ def _loaded(pantograph: Any, assembled: Substructure) -> NDArray[np.bool_]:
     found: NDArray[np.bool_] = (
         (assembled.load != 0) | (assembled.base_stiffness != 0) | (assembled.base_damping != 0)
     )
-    if len(getattr(pantograph, "airs", ())) > 1:
+    if any(air != AerodynamicForce() for air in getattr(pantograph, "airs", ())[:-1]):
         found[: len(assembled.bodies)] = True
     return found
 
@@ -222,17 +225,20 @@ def _coordinate_marker(mbs: exu.MainSystem, place: tuple[int, int]) -> int:
 def _strip_marker(
     mbs: exu.MainSystem, bodies: list[int], made: Substructure, strip: Strip, nominal: Floats
 ) -> int:
-    """On the strip's body, or where there is none at the nominal contact wire height.
-
-    In space a body turns the other way about the axle than pitch counts: its front is behind.
-    """
+    """On the strip's body, or where there is none at the nominal contact wire height."""
     if strip.body is not None:
-        turned = 1.0 if nominal[1] else -1.0
-        arm = turned * strip.ahead if strip.body in made.pitching else 0.0
-        marker = eii.MarkerBodyPosition(bodyNumber=bodies[strip.body], localPosition=[arm, 0.0, 0.0])
+        place = [_arm(made, strip, nominal), 0.0, 0.0]
+        marker = eii.MarkerBodyPosition(bodyNumber=bodies[strip.body], localPosition=place)
         return int(mbs.AddMarker(marker))
     node = mbs.AddNode(eii.NodePointGround(referenceCoordinates=list(nominal)))
     return int(mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=node)))
+
+
+def _arm(made: Substructure, strip: Strip, nominal: Floats) -> float:
+    """[m] of a strip along its body; in space that turns the other way than pitch counts."""
+    if strip.body not in made.pitching:
+        return 0.0
+    return strip.ahead if nominal[1] else -strip.ahead
 
 
 def _add_joints(
@@ -335,8 +341,7 @@ class Contacts:
         mbs.SetMarkerParameter(contact.wire_marker, "localPosition", place)
         if contact.rolls:
             lateral = mbs.GetObjectOutputBody(element, exu.OutputVariableType.Position, place)[1]
-            arm = mbs.GetMarkerParameter(contact.strip_marker, "localPosition")[0]
-            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [float(arm), float(lateral), 0])
+            mbs.SetMarkerParameter(contact.strip_marker, "localPosition", [contact.arm, float(lateral), 0])
         height, climb = path.surface(position)
         if path.irregularity:
             mbs.SetObjectParameter(contact.connector, "offset", list(height * np.eye(3)[self._up]))
