@@ -33,13 +33,14 @@ Examples:
       --vary span.*.pre_sag=0:0.03:4 -o sweep
 
 \b
---speed-kmh takes speeds, or first:last:step. --vary takes PLACE=first:last:count or PLACE=a,b,c; a place
-is written as in the layout file with dots between tables, numbers (from 1) or * for members of a list;
-values of the pantograph start with 'pantograph.', those of the conditions with 'conditions.', whether there
-is a file of them or not. All combinations are run.
+--speed-kmh and --distance-m take numbers, or first:last:step. --vary takes PLACE=first:last:count or
+PLACE=a,b,c; a place is written as in the layout file with dots between tables, numbers (from 1) or * for
+members of a list; values of the pantograph start with 'pantograph.', those of the conditions with
+'conditions.', whether there is a file of them or not. All combinations are run.
 A sweep that was stopped goes on when it is started again with the same folder."""
 
 _MOST = 100_000
+DISTANCE, DIRECTION, DIRECTIONS = "distance_m", "direction", ("forward", "backward")
 _FIGURES = (
     *(FORCE[name] for name in ("mean", "std", "statistical_min", "statistical_max", "min", "max")),
     FORCE["long_contact_loss"], UPLIFT,
@@ -47,7 +48,9 @@ _FIGURES = (
 
 
 @click.command(
-    cls=options.ManyValues, many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at"), epilog=EPILOG
+    cls=options.ManyValues,
+    many=("--speed-kmh", "--pantograph", "--vary", "--pantograph-at", "--distance-m", "--direction"),
+    epilog=EPILOG,
 )
 @options.layout
 @click.option("--speed-kmh", "speeds", multiple=True, required=True, help="Speeds, or first:last:step.")
@@ -57,6 +60,16 @@ _FIGURES = (
 @click.option(
     "--pantograph-at", "positions", multiple=True, type=float,
     help="Positions in m at the start: each case runs one pantograph at each.",
+)  # fmt: skip
+@click.option(
+    "--distance-m",
+    "distances",
+    multiple=True,
+    help="Distances of two pantographs, or first:last:step; the rear one starts where one alone does.",
+)
+@click.option(
+    "--direction", "directions", multiple=True, type=click.Choice(DIRECTIONS),
+    help="Run along the line, or from its other end.",
 )  # fmt: skip
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
 @options.conditions("Wind, ice and temperature that the line is under.")
@@ -75,6 +88,8 @@ def sweep(  # long: an argument an option
     speeds: tuple[str, ...],
     names: tuple[str, ...],
     positions: tuple[float, ...],
+    distances: tuple[str, ...],
+    directions: tuple[str, ...],
     variations: tuple[str, ...],
     conditions: str | None,
     keep_force: bool,
@@ -96,7 +111,7 @@ def sweep(  # long: an argument an option
     output = str(answer.folder)
     if jobs and scheduler:
         raise click.UsageError("--jobs and --scheduler: the cluster has its own processes; give one of them")
-    axes: dict[str, list[Any]] = {"speed_kmh": _speeds(speeds), "pantograph": list(names)}
+    axes = _axes(speeds, names, distances, directions, positions)
     axes |= dict(_variation(text) for text in variations)
     count = math.prod(len(values) for values in axes.values())
     if count > _MOST:
@@ -168,15 +183,33 @@ def kept(output: str) -> Iterator[None]:
         raise
 
 
-def _speeds(texts: Sequence[str]) -> list[float]:
+def _axes(
+    speeds: Sequence[str],
+    names: Sequence[str],
+    distances: Sequence[str],
+    directions: Sequence[str],
+    positions: Sequence[float],
+) -> dict[str, list[Any]]:
+    """Values by what each case has one of."""
+    found: dict[str, list[Any]] = {"speed_kmh": _numbers("--speed-kmh", speeds), "pantograph": list(names)}
+    if distances and len(positions) > 1:
+        raise click.UsageError("--distance-m and --pantograph-at: give one position at most, the rear one's")
+    if distances:
+        found[DISTANCE] = _numbers("--distance-m", distances)
+    if directions:
+        found[DIRECTION] = list(dict.fromkeys(directions))
+    return found
+
+
+def _numbers(option: str, texts: Sequence[str]) -> list[float]:
     values: list[float] = []
     for text in texts:
-        parts = [_number(part, "--speed-kmh", text) for part in text.split(":")]
+        parts = [_number(part, option, text) for part in text.split(":")]
         if len(parts) == 1:
             values += parts
             continue
         if len(parts) != 3 or parts[2] <= 0 or parts[1] < parts[0]:
-            raise click.BadParameter(f"--speed-kmh {text}: must be a speed or first:last:step, rising")
+            raise click.BadParameter(f"{option} {text}: must be a number or first:last:step, rising")
         count = int(np.floor((parts[1] - parts[0]) / parts[2] + 1e-9)) + 1
         values += [round(parts[0] + i * parts[2], 9) for i in range(count)]
     return list(dict.fromkeys(values))
@@ -222,10 +255,11 @@ def _cases(
         made = variable.catenary(dict(varied))
         return made.replace(evaluated_spans=tuple(spans)) if spans else made
 
+    backward = cache(lambda line: line.mirrored())
     weather = cache(lambda varied: variable.conditions(dict(varied)))
     pantograph = cache(lambda name, varied: varied_pantograph(name, dict(varied)))
     cases: list[SweepCase | BrokenCase] = []
-    own = ("speed_kmh", "pantograph")
+    own = ("speed_kmh", "pantograph", DISTANCE, DIRECTION)
     for combination in itertools.product(*axes.values()):
         values = dict(zip(axes, combination, strict=True))
         of_line, of_head, of_day = (
@@ -238,13 +272,15 @@ def _cases(
         except InputError as error:
             cases.append(BrokenCase(values=values, error=error))
             continue
-        heads, speed = (head,) * max(1, len(positions)), values["speed_kmh"] / 3.6
+        if values.get(DIRECTION) == DIRECTIONS[1]:
+            line = backward(line)
+        starts = _starts(line, positions, values.get(DISTANCE))
         case = SweepCase(
             values=values,
             catenary=line,
-            pantographs=heads,
-            speed=speed,
-            positions=positions,
+            pantographs=(head,) * max(1, len(starts)),
+            speed=values["speed_kmh"] / 3.6,
+            positions=starts,
             conditions=day,
         )
         cases.append(case)
@@ -252,6 +288,14 @@ def _cases(
     if len(faults) == len(cases):
         raise faults[0]
     return cases
+
+
+def _starts(line: Catenary, positions: tuple[float, ...], distance: float | None) -> tuple[float, ...]:
+    """[m] of the pantographs; of two at a distance [m], the front one first."""
+    if distance is None:
+        return positions
+    rear = positions[0] if positions else float(np.diff(line.support_positions).min()) / 6
+    return (rear + distance, rear)
 
 
 def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[dict[str, Any]]:

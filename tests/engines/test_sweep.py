@@ -209,3 +209,28 @@ def test_the_command_varies_conditions_and_writes_forces(layout, tmp_path):
     with (out / "force.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 2 * 121 and rows[1]["position_m"] == "120.500"
+
+
+def test_distances_and_directions_are_axes(layout, tmp_path, capsys):
+    """The rear pantograph starts where one alone does; from the other end a line is its mirror image."""
+    text = layout.read_text().replace("droppers = [5.0, 10.5,", "droppers = [6.0, 10.5,")
+    layout.write_text(text)
+    command = ["sweep", str(layout), "--pantograph", "EN 50318:2002", "--speed-kmh", "200",
+               "--distance-m", "30", "50", "--direction", "forward", "backward", "--time-step-ms", "2",
+               "--element-m", "4", "--quiet", "-o", str(tmp_path / "out")]  # fmt: skip
+    assert main(command) == 0
+    rows = table(tmp_path / "out")
+    assert [(r["distance_m"], r["direction"], r["number"]) for r in rows] == [
+        (d, way, n) for d in ("30.000", "50.000") for way in ("forward", "backward") for n in ("1", "2")
+    ]
+    line, settings = cf.load_catenary(layout).mirrored(), cf.MeshSettings(contact_wire_element=4.0)
+    head = cf.library.pantograph("EN 50318:2002")
+    run = cf.simulate(
+        cf.find_form(line, settings), [head] * 2, speed=200 / 3.6, positions=[60.0, 10.0],
+        method="linearised", time=cf.TimeSettings(step=2e-3),
+    )  # fmt: skip
+    sigma = [s.std for s in run.contact_force_statistics()]
+    assert [float(r["std_N"]) for r in rows[6:]] == pytest.approx(sigma, abs=0.051)
+    assert float(rows[4]["std_N"]) != pytest.approx(sigma[0], abs=0.051)
+    assert main([*command, "--pantograph-at", "40", "10"]) == 2
+    assert "give one position at most" in capsys.readouterr().err
