@@ -101,7 +101,8 @@ if TYPE_CHECKING:
     )
     from catenary_fe.statics.elasticity import StaticState, elasticity, solve_statics
     from catenary_fe.studies import Session, modal_run, simulate, solve_modes, stepping
-    from catenary_fe.studies.design import DesignProblem, Evaluation, Optimum, optimise
+    from catenary_fe.studies.design import DesignProblem, Evaluation
+    from catenary_fe.studies.optimise import Optimum, optimise
     from catenary_fe.studies.scatter import Scatter, run_scatter
     from catenary_fe.studies.single_wire import run_wire
 
@@ -111,7 +112,8 @@ _ROOMS = {
     "engines.modal.run": ("modal_run",),
     "engines.settings": ("TimeSettings",),
     "engines.exudyn": ("ExudynModel", "exudyn_model"),
-    "studies.design": ("DesignProblem", "Evaluation", "Optimum", "optimise"),
+    "studies.design": ("DesignProblem", "Evaluation"),
+    "studies.optimise": ("Optimum", "optimise"),
     "studies.scatter": ("Scatter", "run_scatter"),
     "studies.single_wire": ("run_wire",),
     "statics": (

@@ -13,7 +13,8 @@ from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_b
 from catenary_fe.layout import load_study
 
 if TYPE_CHECKING:
-    from catenary_fe.studies.design import Evaluation, Optimum
+    from catenary_fe.studies.design import Evaluation
+    from catenary_fe.studies.optimise import Optimum
 
 EPILOG = """\b
 Examples:
@@ -61,10 +62,11 @@ def optimise(
     """
     from catenary_fe.engines.settings import TimeSettings
     from catenary_fe.fe import MeshSettings
-    from catenary_fe.studies import design
+    from catenary_fe.studies.design import DesignProblem
+    from catenary_fe.studies.optimise import optimise as look_for
 
     output = str(answer.folder)
-    problem = design.DesignProblem(
+    problem = DesignProblem(
         load_study(study),
         folder=output,
         jobs=jobs or -1,
@@ -72,7 +74,7 @@ def optimise(
         mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
     )
     with progress_bar(f"at most {most} designs", not answer.quiet) as progress, kept(output):
-        found = design.optimise(
+        found = look_for(
             problem,
             search=search,
             most=most,

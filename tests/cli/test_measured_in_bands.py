@@ -7,16 +7,9 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.cli import main
+from tests.engines.test_scatter import LINE as THREE_SPANS
 
-LINE = """
-name = "three spans"
-contact_wire = { library = "AC-120 CuMg", tension = 20e3 }
-messenger_wire = { library = "BzII 120", tension = 16e3 }
-support = { messenger_stiffness = 500e3, steady_arm = { stiffness = 200.0, mass = 0.8 } }
-damping = { beta = 1e-4 }
-evaluated_spans = [3]
-span = [{ length = 40.0, droppers = [10.0, 30.0], count = 4 }]
-"""
+LINE = THREE_SPANS.replace("count = 3", "count = 4") + "evaluated_spans = [3]\n"
 STUDY = """
 layout = "line.toml"
 pantographs = ["EN 50318:2002"]

@@ -8,17 +8,16 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.cli import main
-from catenary_fe.studies import design
+from catenary_fe.studies import optimise as searching
+from catenary_fe.studies.design import Evaluation
+from tests.engines.test_scatter import LINE as THREE_SPANS
 
-LINE = """
-name = "four spans"
-contact_wire = { library = "AC-120 CuMg", tension = 14e3 }
-messenger_wire = { library = "BzII 120", tension = 12e3 }
-support = { messenger_stiffness = 500e3, steady_arm = { stiffness = 200.0, mass = 0.8 } }
-damping = { beta = 1e-4 }
-evaluated_spans = [3]
-span = [{ length = 40.0, droppers = [10.0, 30.0], count = 4 }]
-"""
+LINE = (
+    THREE_SPANS.replace("tension = 20e3", "tension = 14e3")
+    .replace("tension = 16e3", "tension = 12e3")
+    .replace("count = 3", "count = 4")
+    + "evaluated_spans = [3]\n"
+)
 STUDY = """
 layout = "line.toml"
 pantographs = ["EN 50318:2002"]
@@ -51,9 +50,7 @@ class Formula:
 
     def evaluate_all(self, designs, progress=None, **_):
         return [
-            design.Evaluation(
-                x=x, values={}, objective=float(self._worth(x)), used=float(self._used(x)), cases=[]
-            )
+            Evaluation(x=x, values={}, objective=float(self._worth(x)), used=float(self._used(x)), cases=[])
             for x in designs
         ]
 
@@ -62,7 +59,7 @@ class Formula:
 def test_a_quadratic_and_a_constrained_closed_form(search, most, off):
     """(x − 1)² + 4 (y + 2)² is smallest at (1, −2); with x + y ≥ 2 at (3.4, −1.4), by Lagrange."""
     bounds, worth = [(-5, 5), (-5, 5)], lambda x: (x[0] - 1) ** 2 + 4 * (x[1] + 2) ** 2 + 1
-    look = {"local": design._local, "global": design._global}[search]
+    look = {"local": searching._local, "global": searching._global}[search]
 
     def best(used):
         problem, seen = Formula(bounds, (3.0, 3.0), worth, used), []
@@ -74,7 +71,7 @@ def test_a_quadratic_and_a_constrained_closed_form(search, most, off):
             return found
 
         look(problem, see, begin, most)
-        return min(seen, key=design._rank).x
+        return min(seen, key=searching._rank).x
 
     assert best(lambda x: 0.0) == pytest.approx([1.0, -2.0], abs=10 * off)
     # minimum of (x − 1)² + 4 (y + 2)² on x + y = 2: x = 1 + 4 t, y = −2 + t, 5 t = 3
@@ -96,9 +93,9 @@ def test_whole_numbers_are_found_by_the_global_search_alone():
 
     begin = problem.evaluate_all([problem.start])[0]
     with pytest.raises(cf.InputError, match="x0: whole numbers are found by the global search alone"):
-        design._local(problem, see, begin, 10)
-    design._global(problem, see, begin, 200)
-    assert min(seen, key=design._rank).x.tolist() == [3.0, 7.0]
+        searching._local(problem, see, begin, 10)
+    searching._global(problem, see, begin, 200)
+    assert min(seen, key=searching._rank).x.tolist() == [3.0, 7.0]
 
 
 def test_a_design_is_worth_what_its_runs_are(study, tmp_path):
