@@ -9,7 +9,7 @@ import pytest
 import catenary_fe as cf
 from catenary_fe.cli import main
 from catenary_fe.studies import optimise as searching
-from catenary_fe.studies.design import Evaluation
+from catenary_fe.studies.design import Evaluation, _used
 from tests.engines.test_scatter import LINE as THREE_SPANS
 
 LINE = (
@@ -191,3 +191,13 @@ def test_what_is_no_design_is_refused(study, tmp_path, text, said):
     with pytest.raises(cf.InputError) as error:
         cf.DesignProblem(study(text), folder=tmp_path / "out")
     assert said in str(error.value)
+
+
+def test_a_limit_with_a_tolerance_is_used_as_the_criterion_has_it():
+    given = {"name": "mean force", "unit": "N", "source": "", "limit": 100.0}
+    within = cf.Criterion(value=100.3, tolerance=0.5, **given)
+    assert within.used > 1 and within.passed
+    assert _used(within) == 1.0
+    assert _used(cf.Criterion(value=100.6, tolerance=0.5, **given)) == pytest.approx(1.006)
+    at_limit = cf.Criterion(value=100.0, relation="above", **given)
+    assert at_limit.passed is False and _used(at_limit) > 1
