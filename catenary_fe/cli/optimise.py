@@ -60,8 +60,6 @@ def optimise(
 
     Exit code 1 where the best design misses a criterion.
     """
-    from catenary_fe.engines.settings import TimeSettings
-    from catenary_fe.fe import MeshSettings
     from catenary_fe.studies.design import DesignProblem
     from catenary_fe.studies.optimise import optimise as look_for
 
@@ -70,8 +68,8 @@ def optimise(
         load_study(study),
         folder=output,
         jobs=jobs or -1,
-        time=TimeSettings(step=time_step_ms / 1e3),
-        mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
+        time=options.time_of(time_step_ms),
+        mesh=options.mesh_of(element_m),
     )
     with progress_bar(f"at most {most} designs", not answer.quiet) as progress, kept(output):
         found = look_for(

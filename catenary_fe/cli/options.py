@@ -6,7 +6,7 @@ import re
 import shlex
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 from click.shell_completion import CompletionItem
@@ -26,6 +26,10 @@ from catenary_fe.layout import (
 from catenary_fe.layout.conditions import one_of_a_run
 from catenary_fe.layout.files import MOST_SPANS
 from catenary_fe.results.signal import FilterKind
+
+if TYPE_CHECKING:
+    from catenary_fe.engines.settings import TimeSettings
+    from catenary_fe.fe import MeshSettings
 
 Decorator = Callable[[Any], Any]
 _RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
@@ -198,3 +202,17 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def time_of(time_step_ms: float) -> TimeSettings:
+    """Settings of the time integration by what :func:`time_step` takes."""
+    from catenary_fe.engines.settings import TimeSettings
+
+    return TimeSettings(step=time_step_ms / 1e3)
+
+
+def mesh_of(element_m: float | None) -> MeshSettings:
+    """Settings of the mesh by what :func:`element` takes; unset: the usual ones."""
+    from catenary_fe.fe import MeshSettings
+
+    return MeshSettings() if element_m is None else MeshSettings(contact_wire_element=element_m)

@@ -94,8 +94,6 @@ def run(  # long: an argument an option
     answer: Answer,
 ) -> int:
     """Run pantographs along a LAYOUT at constant speed: contact force, uplift, loss of contact."""
-    from catenary_fe.engines.settings import TimeSettings
-    from catenary_fe.fe import MeshSettings
     from catenary_fe.statics import settle
     from catenary_fe.studies import simulate
 
@@ -109,8 +107,8 @@ def run(  # long: an argument an option
         raise click.UsageError("--store-wire-ms has no effect without -o, whose folder keeps the shapes")
     if store_wire_ms is None:
         store_wire_ms = max(WIRE_INTERVAL, time_step_ms) if output else 0.0
-    mesh = MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings()
-    time = TimeSettings(step=time_step_ms / 1e3)
+    mesh = options.mesh_of(element_m)
+    time = options.time_of(time_step_ms)
     with static_shape(catenary, answer, mesh) as (shape, folder):
         if weather:
             shape = settle(shape, weather)

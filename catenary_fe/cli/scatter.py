@@ -69,8 +69,6 @@ def scatter(  # long: an argument an option
 
     Exit code 1 where a sample misses a criterion, if the study names a system of criteria.
     """
-    from catenary_fe.engines.settings import TimeSettings
-    from catenary_fe.fe import MeshSettings
     from catenary_fe.studies.scatter import run_scatter
 
     output = str(answer.folder)
@@ -87,8 +85,8 @@ def scatter(  # long: an argument an option
             sensitivity=sensitivity,
             sampling=sampling,
             method=method,
-            time=TimeSettings(step=time_step_ms / 1e3),
-            mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
+            time=options.time_of(time_step_ms),
+            mesh=options.mesh_of(element_m),
             jobs=jobs or -1,
             scheduler=scheduler,
             retry=retry_failed,

@@ -104,8 +104,6 @@ def sweep(  # long: an argument an option
     answer: Answer,
 ) -> int:
     """Run a LAYOUT at many speeds, with many pantographs and values: one table, and pictures."""
-    from catenary_fe.engines.settings import TimeSettings
-    from catenary_fe.fe import MeshSettings
     from catenary_fe.studies.sweep import LOST, SweepSettings, run_sweep
 
     output = str(answer.folder)
@@ -118,8 +116,8 @@ def sweep(  # long: an argument an option
         raise InputError(f"sweep: {count} cases are more than {_MOST}; take fewer values")
     settings = SweepSettings(
         method=method,
-        mesh=MeshSettings(contact_wire_element=element_m) if element_m is not None else MeshSettings(),
-        time=TimeSettings(step=time_step_ms / 1e3),
+        mesh=options.mesh_of(element_m),
+        time=options.time_of(time_step_ms),
         keep_force=keep_force,
     )
     cases = _cases(Variable(layout, conditions), axes, positions, spans)
