@@ -183,16 +183,17 @@ def checked(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
 
     Of annotations that are not known here, the function itself must check the values. Raises InputError.
     """
-    signature = inspect.signature(function)
+    parameters = inspect.signature(function).parameters
+    names = [name for name, p in parameters.items() if p.kind <= p.POSITIONAL_OR_KEYWORD]
     kinds = {
         name: str(parameter.annotation).split(" | ")
-        for name, parameter in signature.parameters.items()
+        for name, parameter in parameters.items()
         if parameter.annotation is not parameter.empty
     }
 
     @wraps(function)
     def call(*args: _Given.args, **kwargs: _Given.kwargs) -> _Result:
-        for name, value in signature.bind(*args, **kwargs).arguments.items():
+        for name, value in (*zip(names, args, strict=False), *kwargs.items()):
             if name in kinds and not (value is None and "None" in kinds[name]):
                 _check_kind(name, value, kinds[name])
         return function(*args, **kwargs)

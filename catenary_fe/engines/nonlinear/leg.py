@@ -89,7 +89,7 @@ class Leg:
         )
 
     def arrays(self, state: State, records: Records) -> Arrays:
-        """Its part of the run, for :meth:`put_back` after steps."""
+        """Its part of the run: views, but for what :meth:`take_from` and :meth:`put_back` copy."""
         wires = Wires(*(array[self.rows] for array in state.wires))
         motion, slack, energy = state.motion, state.slack, state.energy
         return Arrays(
@@ -121,8 +121,12 @@ class Leg:
             records._replace(droppers=records.droppers[:, self.droppers]),
         )
 
+    def take_from(self, state: State, arrays: Arrays) -> None:
+        """Read what is no view from the run, before steps."""
+        np.take(state.motion.total, self.coordinates, out=arrays.motion.total)
+
     def put_back(self, arrays: Arrays, state: State) -> None:
-        """Write what is no view into the run."""
+        """Write it into the run, after them."""
         state.motion.total[self.coordinates] = arrays.motion.total
 
     def take_over(self, state: State, before: Leg) -> None:

@@ -16,7 +16,7 @@ from catenary_fe.engines.faults import place_of_heads, smaller_steps
 from catenary_fe.engines.generalized_alpha import Scheme, at_start, make_scheme
 from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.nonlinear.arrays import Factor
-from catenary_fe.engines.nonlinear.leg import Leg
+from catenary_fe.engines.nonlinear.leg import Arrays, Leg
 from catenary_fe.engines.nonlinear.recorder import EnergyRecord, RunRecorder
 from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
@@ -127,6 +127,7 @@ class NonlinearRun:
         self._parameters, self._steps, self._step = engine._parameters, steps, engine._time.step
         self._start = _initial_state(self._parameters, moved, pantographs, speed)
         self._leg: Leg | None = None
+        self._own: Arrays | None = None  # of the leg
         self._computed = Computed(self._parameters.rows.starts.size - 1)
         self._all = bool(system.time_loads)
         paths = system.contact_paths
@@ -248,6 +249,7 @@ class NonlinearRun:
         self._computed.steps[:] = kept["computed"]
         first, end = kept["sections"].tolist()
         self._leg = Leg.of(self._parameters, (first, end)) if end > first else None
+        self._own = None
         self._notes = kept["notes"].tolist()
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -324,7 +326,7 @@ class NonlinearRun:
             paths = self._parameters.system.contact_paths
             met = sections_met(paths, self._start.contacts, metre * self.done, metre * (self.done + steps))
         if not self._leg or self._leg.sections != met:
-            before, self._leg = self._leg, Leg.of(self._parameters, met)
+            before, self._leg, self._own = self._leg, Leg.of(self._parameters, met), None
             if before:
                 self._leg.take_over(self.state, before)
         self._computed.add(met, self.done, self.done + steps)
@@ -344,7 +346,8 @@ class NonlinearRun:
     def _take(self, steps: int, parts: int, scheme: Scheme, factor: Factor) -> bool:
         state, leg, tolerance = self.state, self._leg, self._engine._time.tolerance
         assert leg
-        own = leg.arrays(state, self.records)
+        own = self._own = self._own or leg.arrays(state, self.records)
+        leg.take_from(state, own)
         begin = int(state.pantographs.step[0])
         times = self._step * (begin + np.arange(steps * parts + 1) / parts)
         signals = self._parameters.system.signals(times)
