@@ -15,6 +15,7 @@ from catenary_fe.cli.folder import changed_files, folder_of, output_folder, run_
 from catenary_fe.cli.line_test import TestOptions, compare_line_test, test_options
 from catenary_fe.cli.run import write_run
 from catenary_fe.cli.surroundings import readable
+from catenary_fe.cli.sweep_report import is_sweep, report_sweep
 from catenary_fe.cli.terminal import (
     Answer,
     print_json,
@@ -40,7 +41,7 @@ TOLERANCE = 0.1  # [N] of mean and standard deviation
 
 
 @click.command(
-    epilog="\b\nExamples:\n  catenary-fe report run300\n  catenary-fe report run300 -o to_send.html"
+    epilog="\b\nExamples:\n  catenary-fe report run300\n  catenary-fe report sweep -o to_send.html"
 )
 @options.folder
 @options.output("Name of the page; unset: FOLDER/report.html.", "FILE")
@@ -50,7 +51,15 @@ TOLERANCE = 0.1  # [N] of mean and standard deviation
 def report(
     folder: str, output: str | None, filter_kind: FilterKind | None, system: PowerSystem | None, quiet: bool
 ) -> None:
-    """Write a report of the run in FOLDER: one HTML page that needs no other file and no network."""
+    """Write a report of the run or sweep in FOLDER: one HTML page that needs no other file and no network.
+
+    Of a sweep that kept its runs, each run gets its own page, too, which the sweep's page names.
+    """
+    if is_sweep(folder):
+        if filter_kind or system:
+            raise click.UsageError("--filter and --criteria are of a single run; a sweep has its own")
+        report_sweep(folder, output, quiet)
+        return
     from catenary_fe.studies.rerun import shape_of
     from catenary_fe.views.report import report_page
 

@@ -13,17 +13,14 @@ import click
 import numpy as np
 
 from catenary_fe.cli import options
-from catenary_fe.cli.folder import output_folder
-from catenary_fe.cli.surroundings import readable
-from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_bar, say
-from catenary_fe.cli.verdicts import Verdict, in_words, remarks, sweep_exit_code, verdict_of, warn_once
+from catenary_fe.cli.sweep_table import print_sweep, rows_of, sweep_record, write_sweep
+from catenary_fe.cli.terminal import Answer, print_json, progress_bar, say
+from catenary_fe.cli.verdicts import sweep_exit_code, verdict_of, warn_once
 from catenary_fe.layout import Catenary, InputError, PowerSystem, counted
-from catenary_fe.layout.variation import CONDITIONS, PANTOGRAPH, Variable, kind_of, unit_of, varied_pantograph
-from catenary_fe.results.quantities import DROPPER_FORCE, FORCE, SLACK_DROPPERS, UPLIFT
+from catenary_fe.layout.variation import CONDITIONS, PANTOGRAPH, Variable, kind_of, varied_pantograph
 
 if TYPE_CHECKING:
     from catenary_fe.studies.sweep import BrokenCase, SweepCase
-    from catenary_fe.studies.sweep_store import Record
 
 EPILOG = """\b
 Examples:
@@ -37,14 +34,11 @@ Examples:
 PLACE=a,b,c; a place is written as in the layout file with dots between tables, numbers (from 1) or * for
 members of a list; values of the pantograph start with 'pantograph.', those of the conditions with
 'conditions.', whether there is a file of them or not. All combinations are run.
-A sweep that was stopped goes on when it is started again with the same folder."""
+A sweep that was stopped goes on when it is started again with the same folder. 'catenary-fe report DIR' makes
+one page of it."""
 
 _MOST = 100_000
 DISTANCE, DIRECTION, DIRECTIONS = "distance_m", "direction", ("forward", "backward")
-_FIGURES = (
-    *(FORCE[name] for name in ("mean", "std", "statistical_min", "statistical_max", "min", "max")),
-    FORCE["long_contact_loss"], UPLIFT,
-)  # fmt: skip
 
 
 @click.command(
@@ -74,6 +68,7 @@ _FIGURES = (
 @click.option("--vary", "variations", multiple=True, metavar="PLACE=VALUES", help="Vary a value.")
 @options.conditions("Wind, ice and temperature that the line is under.")
 @options.flag("--keep-force", "Write the contact force along the evaluated spans, too: force.csv.")
+@options.flag("--keep-runs", "Keep each run whole, too, in runs/NUMBER; report makes a page of each.")
 @options.method("linearised", "nonlinear", "exudyn")
 @options.time_step
 @options.element
@@ -93,6 +88,7 @@ def sweep(  # long: an argument an option
     variations: tuple[str, ...],
     conditions: str | None,
     keep_force: bool,
+    keep_runs: bool,
     method: Any,
     time_step_ms: float,
     element_m: float | None,
@@ -119,6 +115,7 @@ def sweep(  # long: an argument an option
         mesh=options.mesh_of(element_m),
         time=options.time_of(time_step_ms),
         keep_force=keep_force,
+        keep_runs=keep_runs,
     )
     cases = _cases(Variable(layout, conditions), axes, positions, spans)
     with progress_bar(counted(count, "case"), not answer.quiet) as progress, kept(output):
@@ -132,13 +129,13 @@ def sweep(  # long: an argument an option
             progress=(lambda done, all_: progress(done / all_)) if progress else None,
         )
     verdicts = [verdict_of(record, case, system) for record, case in zip(records, cases, strict=True)]
-    rows = [row for both in zip(records, verdicts, strict=True) for row in _rows(*both, system)]
-    _write(output, rows, axes, verdicts, records if keep_force else [])
+    made = sweep_record(cases, records, verdicts, settings, system, axes)
+    write_sweep(output, made, verdicts, records)
     if answer.as_json:
-        print_json(rows)
+        print_json(rows_of(made))
     elif not answer.quiet:
-        _print(rows, axes)
-        for words in in_words(verdicts, system):
+        print_sweep(made)
+        for words in made["said"]:
             click.echo(words)
         click.echo(f"table and pictures in {output}")
     if not answer.quiet:
@@ -294,95 +291,3 @@ def _starts(line: Catenary, positions: tuple[float, ...], distance: float | None
         return positions
     rear = positions[0] if positions else float(np.diff(line.support_positions).min()) / 6
     return (rear + distance, rear)
-
-
-def _rows(record: Record, verdict: Verdict, system: PowerSystem | None) -> list[dict[str, Any]]:
-    """One row a pantograph; a failed case has one row with its error."""
-    values = {k: readable(v) if isinstance(v, str) else v for k, v in record["values"].items()}
-    if verdict.error:
-        return [values | {"error": verdict.error}]
-    summary = record["summary"]
-    several = len(summary["pantographs"]) > 1
-    keys = (UPLIFT.key, SLACK_DROPPERS.key, DROPPER_FORCE.key, "simulated_s")
-    common = {key: summary[key] for key in keys}
-    return [
-        values
-        | {"number": i}
-        | ({"governs": "yes" if statistics["name"] == verdict.governing else ""} if several else {})
-        | {key: value for key, value in statistics.items() if key != "name"}
-        | common
-        | {"checks_failed": "; ".join(verdict.failed_checks)}
-        | ({"criteria_missed": verdict.missed_by(statistics["name"])} if system else {})
-        | {"warnings": len(verdict.warnings), "error": ""}
-        for i, statistics in enumerate(summary["pantographs"], start=1)
-    ]
-
-
-def force_rows(records: Sequence[Record]) -> Iterator[dict[str, Any]]:
-    """Rows of a table: the force that records keep, case by case, pantograph by pantograph."""
-    for record in records:
-        force = record.get("force", {"x": [], "values": []})
-        for number, values in enumerate(force["values"], start=1):
-            for x, newton in zip(force["x"], values, strict=True):
-                place = {"number": number, "position_m": x, "contact_force_0_20_Hz_N": newton}
-                yield record["values"] | place
-
-
-def _write(
-    output: str,
-    rows: Sequence[dict[str, Any]],
-    axes: dict[str, list[Any]],
-    verdicts: Sequence[Verdict],
-    with_force: Sequence[Record],
-) -> None:
-    """Table and pictures, and the force along the line of the records that have it."""
-    from catenary_fe import views
-
-    columns = dict.fromkeys(key for row in sorted(rows, key=len, reverse=True) for key in row)
-    with output_folder(output) as folder:
-        assert folder is not None
-        folder.table("sweep.csv", [_with_units({key: row.get(key, "") for key in columns}) for row in rows])
-        if said := [_with_units(row) for row in remarks(verdicts)]:
-            folder.table("remarks.csv", said)
-        else:
-            folder.forget("remarks.csv")  # of an earlier state of the sweep
-        if forces := [_with_units(row) for row in force_rows(with_force)]:
-            folder.table("force.csv", forces)
-        else:
-            folder.forget("force.csv")
-        x, by = _axis(axes)
-        good = [row for row in rows if not row["error"]]
-        if good and x:
-            folder.picture("contact_force.png", views.plot_sweep_forces(good, x, by))
-            folder.picture("standard_deviation.png", views.plot_sweep_deviation(good, x, by))
-            folder.picture("support_uplift.png", views.plot_sweep_uplift(good, x, by))
-
-
-def _with_units(row: dict[str, Any]) -> dict[str, Any]:
-    """A table's row, columns of varied values named with their units."""
-    return {f"{key} [{unit}]" if (unit := unit_of(key)) else key: value for key, value in row.items()}
-
-
-def _axis(axes: dict[str, list[Any]]) -> tuple[str | None, list[str]]:
-    """What goes along the horizontal axis, and what tells the curves apart."""
-    varied = [name for name, values in axes.items() if len(values) > 1]
-    numeric = [name for name in varied if not any(isinstance(v, bool | str) for v in axes[name])]
-    x = numeric[0] if numeric else None
-    return x, [name for name in varied if name != x]
-
-
-def _print(rows: Sequence[dict[str, Any]], axes: dict[str, list[Any]]) -> None:
-    varied = [name for name, values in axes.items() if len(values) > 1] or ["speed_kmh"]
-    if any(row.get("number", 1) > 1 for row in rows):
-        varied += ["number", "governs"]
-    said = [key for key in ("checks_failed", "criteria_missed") if any(key in row for row in rows)]
-    table = [
-        [
-            *(row.get(name, "") for name in varied),
-            *("failed" if row["error"] else q.number(row[q.key]) for q in _FIGURES),
-            *(len(row[key].split("; ")) if row.get(key) else "" for key in said),
-        ]
-        for row in rows
-    ]
-    titles = [*varied, *(f"{q.short} {q.unit}" for q in _FIGURES), *(key.replace("_", " ") for key in said)]
-    print_table("sweep", titles, table)

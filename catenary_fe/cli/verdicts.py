@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from catenary_fe.studies.sweep_store import Record
 
 _MOST = 5  # warnings by themselves
+_NO_MARGIN = 100.0  # share of a limit
 
 
 def evaluated(
@@ -97,9 +98,36 @@ class Verdict:
         """Criteria that it misses."""
         return [row for row in self.criteria if row.passed is False]
 
+    def as_dict(self) -> dict[str, Any]:
+        """Ready for JSON, criteria with the share of their limits used."""
+        from catenary_fe.results import labels
+
+        return {
+            "values": self.values,
+            "governing": self.governing,
+            "criteria": [
+                row.as_dict()
+                | {
+                    "label": label,
+                    "used": row.used,
+                    "value_text": row.value_text,
+                    "limit_text": row.limit_text,
+                }
+                for row, label in zip(self.criteria, labels(self.criteria), strict=True)
+            ],
+            "checks_failed": self.failed_checks,
+            "warnings": list(self.warnings),
+            "error": self.error,
+        }
+
     def missed_by(self, pantograph: str) -> str:
         """Names of the criteria that a pantograph misses, and the line's."""
         return "; ".join(row.name for row in self.missed if row.pantograph in (pantograph, None))
+
+
+def _finite(used: float | None) -> float | None:
+    """A share of a limit as JSON can hold it; where there is no margin at all, a large one."""
+    return None if used is None else min(used, _NO_MARGIN)
 
 
 def verdict_of(record: Record, case: SweepCase | BrokenCase, system: PowerSystem | None) -> Verdict:

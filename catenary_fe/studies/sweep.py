@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,7 @@ class SweepSettings:
     """What all cases of a sweep have in common.
 
     keep_force : records have the filtered contact force along the evaluated spans, too, as ``force``
+    keep_runs : the folder has each run whole, too: ``run`` of a record is the path of its file
     short : linearised runs end a span behind the last evaluated one
     """
 
@@ -53,6 +55,7 @@ class SweepSettings:
     time: TimeSettings = field(default_factory=TimeSettings)
     filter: FilterKind = "causal"
     keep_force: bool = False
+    keep_runs: bool = False
     short: bool = False
 
 
@@ -124,7 +127,7 @@ def run_sweep(
     """
     with open_store(Path(folder) / "cases") as store:
         records = [
-            _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case.key(settings), retry)
+            _failed(case.error) if isinstance(case, BrokenCase) else _kept(store, case, settings, retry)
             for case in cases
         ]
         missing = [i for i, record in enumerate(records) if record is None]
@@ -143,9 +146,11 @@ def run_sweep(
         with closing(_spread(tasks, to_run, settings, workers, scheduler)) as finished:
             for numbers, found in finished:
                 for i, record in zip(numbers, found, strict=True):
-                    records[i] = record
+                    key = to_run[i].key(settings)
+                    run = record.pop("run", None)
                     if LOST not in record:
-                        store.write(to_run[i].key(settings), record)
+                        store.write(key, record, run)
+                    records[i] = record | ({"run": str(store.run(key))} if run else {})
                 done += len(numbers)
                 if progress:
                     progress(done, len(cases))
@@ -154,12 +159,17 @@ def run_sweep(
         ]
 
 
-def _kept(store: Store, key: str, retry: bool) -> Record | None:
+def _kept(store: Store, case: SweepCase, settings: SweepSettings, retry: bool) -> Record | None:
     """The record of a case that is finished; of one that failed only if it shall not be tried again."""
+    key = case.key(settings)
     record = store.read(key)
     if record is None or ("summary" in record) == ("error" in record):
         return None
-    return None if retry and "error" in record else record
+    if "error" in record:
+        return None if retry else record
+    if not settings.keep_runs:
+        return record
+    return record | {"run": str(store.run(key))} if store.run(key).is_file() else None
 
 
 def _largest_demand(cases: Sequence[SweepCase], settings: SweepSettings) -> Demand:
@@ -320,9 +330,17 @@ def _record(result: Run | CatenaryError, settings: SweepSettings) -> Record:
         del summary[key]  # a table is the same whenever and wherever it was computed
     for i, pantograph in enumerate(summary["pantographs"]):
         pantograph["uplift_force_N"] = float(result.data["uplift_force"].values[i])
-    return {"summary": summary} | (
-        {"force": force_along(result, settings.filter)} if settings.keep_force else {}
+    return (
+        {"summary": summary}
+        | ({"force": force_along(result, settings.filter)} if settings.keep_force else {})
+        | ({"run": _bytes(result)} if settings.keep_runs else {})
     )
+
+
+def _bytes(run: Run) -> bytes:
+    """The run's file: a process on another machine has no folder in common with this one."""
+    with TemporaryDirectory() as folder:
+        return run.save(Path(folder) / "run.nc").read_bytes()
 
 
 def _failed(error: CatenaryError) -> Record:

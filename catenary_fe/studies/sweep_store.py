@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from catenary_fe.layout import InputError
-from catenary_fe.results.files import ASIDE, cannot_be_written, locked, write_text
+from catenary_fe.results.files import ASIDE, atomic_write, cannot_be_written, locked, write_text
 
 Record = dict[str, Any]
 _SUM = "sha256"
@@ -31,10 +31,17 @@ class Store:
             return None
         return record if stored == _checksum(record) else None
 
-    def write(self, key: str, record: Record) -> None:
-        """Keep a record. Raises InputError where it cannot be written."""
+    def write(self, key: str, record: Record, run: bytes | None = None) -> None:
+        """Keep a record, and the file of its run. Raises InputError where they cannot be written."""
+        if run is not None:
+            with atomic_write(self.run(key)) as aside:
+                aside.write_bytes(run)
         text = json.dumps(record | {_SUM: _checksum(record)}, allow_nan=False, indent=1)
         write_text(self._path(key), text)
+
+    def run(self, key: str) -> Path:
+        """Where the file of a case's run is, if it was kept."""
+        return self._folder / f"{key}.nc"
 
     def _path(self, key: str) -> Path:
         return self._folder / f"{key}.json"
