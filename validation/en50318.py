@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import catenary_fe as cf
+from catenary_fe.studies.reference_models import NAMES, PUBLISHED, RANGES
 from validation.check import Check
 from validation.engines import engine
 from validation.pictures import label
@@ -28,24 +29,6 @@ SOURCE = (
 REASON = (
     "the range that EN 50318:2002 accepts; the error is the distance outside it in units of its half width"
 )
-NAMES = (
-    ("mean force", "N"),
-    ("standard deviation", "N"),
-    ("statistical maximum", "N"),
-    ("statistical minimum", "N"),
-    ("actual maximum", "N"),
-    ("actual minimum", "N"),
-    ("largest uplift at a support", "mm"),
-    ("loss of contact", "%"),
-)
-RANGES = {
-    250: ((110, 120), (26, 31), (190, 210), (20, 40), (175, 210), (50, 75), (48, 55), (0, 0)),
-    300: ((110, 120), (32, 40), (210, 230), (-5, 20), (190, 225), (30, 55), (55, 65), (0, 0)),
-}
-PUBLISHED = {  # the loss of contact is not among them
-    250: (118.2, 27.6, 201.1, 35.5, 193.7, 70.3, 52.2),
-    300: (118.7, 32.8, 213.2, 19.2, 195.4, 54.7, 59.7),
-}
 APART = ("standard deviation", "statistical maximum", "statistical minimum", "largest uplift at a support")
 
 

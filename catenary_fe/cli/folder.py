@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 import shlex
 import shutil
@@ -187,6 +188,14 @@ def read_record(path: Path) -> dict[str, Any]:
     return found
 
 
+def keep_file(source: str | Path, target: Path) -> None:
+    """A file under a second name, on the same disk without a copy of its content."""
+    with suppress(OSError):
+        os.link(source, target)
+    if not target.exists():
+        shutil.copyfile(source, target)
+
+
 def _unmake(folders: Sequence[Path]) -> None:
     """Remove folders that were created in vain, innermost first, unless something is in them."""
     with suppress(OSError):
@@ -239,7 +248,13 @@ class InputFiles:
 
         options : of the command, besides layout and pantographs
         """
-        files, words = {"layout.toml": self.layout}, ["catenary-fe", "run", "layout.toml"]
+        words, sums = self.write(folder.path)
+        command = shlex.join(["catenary-fe", "run", *words, *options])
+        folder.json("inputs.json", {"command": command, "files_sha256": sums} | recorded_inputs(run))
+
+    def write(self, folder: Path) -> tuple[list[str], dict[str, str]]:
+        """Write the files; what a command in their folder is told of them, and checksums by name."""
+        files, words = {"layout.toml": self.layout}, ["layout.toml"]
         for number, table in enumerate(self.tables, start=1):
             if table is not None:
                 files[_table_name(number)] = table
@@ -252,10 +267,8 @@ class InputFiles:
             files["conditions.toml"] = self.conditions
             words += ["--conditions", "conditions.toml"]
         for name, content in files.items():
-            (folder.path / name).write_bytes(content)
-        sums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
-        command = shlex.join([*words, *options])
-        folder.json("inputs.json", {"command": command, "files_sha256": sums} | recorded_inputs(run))
+            (folder / name).write_bytes(content)
+        return words, {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
 
 
 def _table_name(number: int) -> str:

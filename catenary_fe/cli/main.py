@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from catenary_fe.cli.cases import cases
+from catenary_fe.cli.conform import conform
 from catenary_fe.cli.design import form, info, modes, static
 from catenary_fe.cli.fmu import fmu
 from catenary_fe.cli.layouts import layout
@@ -70,7 +71,8 @@ _SHORT_HELP = {
     optimise: "Values of a line that make a figure the best.",
     scatter: "Samples of values that scatter, and what matters.",
     fmu: "The line for a co-simulation, as an FMU.",
-    report: "One HTML page of a run, to read and hand on.",
+    conform: "All that an assessor asks for of a line, in one folder.",
+    report: "One HTML page of a run or a sweep, to read and hand on.",
     compare: "Runs side by side, or a run beside a line test.",
     film: "Film of a run, as GIF or MP4.",
     waves: "Waves of a run over place and time.",

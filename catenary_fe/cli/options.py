@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 Decorator = Callable[[Any], Any]
 _RANGE = re.compile(r"\s*(-?\d+)\s*(?:[-–]\s*(\d+)\s*)?")  # of spans; zero and less are refused by the line
 
+_OF_FILES = ("layout", "names", "name", "conditions", "tables", "jobs", "output", "as_json", "quiet")
 layout = click.argument("layout", type=click.Path())
 folder = click.argument("folder", type=click.Path())
 jobs = click.option("--jobs", type=click.IntRange(1), default=2, show_default=True, help="Processes.")
@@ -216,3 +217,22 @@ def mesh_of(element_m: float | None) -> MeshSettings:
     from catenary_fe.fe import MeshSettings
 
     return MeshSettings() if element_m is None else MeshSettings(contact_wire_element=element_m)
+
+
+def given(context: click.Context) -> list[str]:
+    """The options as they were given, but for files and what only concerns the output."""
+    words: list[str] = []
+    for option in context.command.params:
+        name = option.name or ""
+        is_given = context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+        if not is_given or name in _OF_FILES:
+            continue
+        value = context.params[name]
+        if value is True:
+            words.append(option.opts[0])
+            continue
+        if name == "spans":
+            value = ",".join(map(str, value))
+        for each in value if isinstance(value, tuple) else (value,):
+            words += [option.opts[0], f"{each:g}" if isinstance(each, float) else str(each)]
+    return words

@@ -112,7 +112,7 @@ def run(  # long: an argument an option
     with static_shape(catenary, answer, mesh) as (shape, folder):
         if weather:
             shape = settle(shape, weather)
-        given = _options(click.get_current_context())
+        given = options.given(click.get_current_context())
         kept = partial_kept(output, shape, files, given, filter_kind)
         with progress_bar(f"run at {speed_kmh:g} km/h", not answer.quiet) as progress, kept:
             result = simulate(
@@ -147,25 +147,6 @@ def run(  # long: an argument an option
 
     answer.show(summary, tables, shape)
     return exit_code(rows)
-
-
-def _options(context: click.Context) -> list[str]:
-    """The options as they were given, but for pantographs and what only concerns the output."""
-    words: list[str] = []
-    for option in context.command.params:
-        name = option.name or ""
-        given = context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
-        if not given or name in ("layout", "names", "conditions", "output", "as_json", "quiet"):
-            continue
-        value = context.params[name]
-        if value is True:
-            words.append(option.opts[0])
-            continue
-        if name == "spans":
-            value = ",".join(map(str, value))
-        for each in value if isinstance(value, tuple) else (value,):
-            words += [option.opts[0], f"{each:g}" if isinstance(each, float) else str(each)]
-    return words
 
 
 @contextmanager

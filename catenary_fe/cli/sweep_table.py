@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from catenary_fe.cli.folder import Folder, output_folder
+from catenary_fe.cli.folder import Folder, keep_file, output_folder
 from catenary_fe.cli.surroundings import readable
 from catenary_fe.cli.terminal import print_table
 from catenary_fe.cli.verdicts import Verdict, in_words, remarks
@@ -142,11 +139,7 @@ def _keep_run(target: Path, record: Record, made: Mapping[str, Any], case: Mappi
     with output_folder(str(target)) as folder:
         assert folder is not None
         folder.json("summary.json", record["summary"] | judged)
-        file = folder.path / "run.nc"
-        with suppress(OSError):
-            os.link(record["run"], file)
-        if not file.exists():
-            shutil.copyfile(record["run"], file)
+        keep_file(record["run"], folder.path / "run.nc")
         folder.forget("report.html")
 
 

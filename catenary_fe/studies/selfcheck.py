@@ -10,8 +10,9 @@ import numpy as np
 from catenary_fe import theory
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.fe.wire_problem import WireProblem, even_nodes, graded_nodes
-from catenary_fe.layout import Catenary, Dropper, RayleighDamping, SteadyArm, Support, Wire, library
+from catenary_fe.layout import Wire, library
 from catenary_fe.statics import find_form
+from catenary_fe.studies.reference_models import PANTOGRAPH, reference_line
 from catenary_fe.studies.simulate import simulate
 
 Progress = Callable[[float], None]
@@ -129,25 +130,9 @@ def _moving_force() -> Iterator[SelfCheck]:
     yield SelfCheck(name, float(motion.deflection[-1][behind]), float(exact[behind]), "m", 0.002, source)
 
 
-def reference_line() -> Catenary:
-    """Four spans of the EN 50318:2002 reference model; sources as of the library."""
-    arm = SteadyArm(stiffness=300.0, mass=0.3)
-    at = (5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0)
-    return Catenary.regular(
-        spans=_SPANS,
-        span_length=60.0,
-        droppers=[Dropper(position=x) for x in at],
-        contact_wire=library.wire("EN 50318:2002 contact wire", tension=20e3),
-        messenger_wire=library.wire("EN 50318:2002 messenger wire", tension=16e3),
-        support=Support(messenger_stiffness=5e5, steady_arm=arm),
-        damping=RayleighDamping(beta=1e-4),
-        evaluated_spans=(3,),
-    )
-
-
 def _reference_run(progress: Progress | None) -> Iterator[SelfCheck]:
-    shape = find_form(reference_line())
-    run = simulate(shape, [library.pantograph("EN 50318:2002")], speed=_SPEED, progress=progress)
+    shape = find_form(reference_line(_SPANS, (3,)))
+    run = simulate(shape, [library.pantograph(PANTOGRAPH)], speed=_SPEED, progress=progress)
     (force,) = run.contact_force_statistics()
     computed = (
         force.mean,
