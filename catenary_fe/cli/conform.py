@@ -167,8 +167,8 @@ def _keep_inputs(
 
 
 def _write(output: str, found: Conformity, shape: Shape, record: dict[str, Any]) -> None:
+    from catenary_fe.studies.conform import slug
     from catenary_fe.views.report import conformity_page
-    from catenary_fe.views.report.conform import slug
 
     places = {f"runs/{run.name}": run for run in found.runs}
     places |= {f"refined/{slug(name)}": run for name, run in found.refined.items() if run not in found.runs}

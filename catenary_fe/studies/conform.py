@@ -17,6 +17,7 @@ from catenary_fe.results.check import Check
 from catenary_fe.results.quantities import FORCE, UPLIFT
 from catenary_fe.statics import LineShape, Shape, find_form, settle
 from catenary_fe.statics.elasticity import elasticity, solve_statics
+from catenary_fe.studies.processes import manager_may_stumble, processes_of
 from catenary_fe.studies.reference_models import PANTOGRAPH, RANGES, InRange, in_ranges, reference_line
 from catenary_fe.studies.selfcheck import SelfCheck, selfcheck
 from catenary_fe.studies.sweep import SweepCase, SweepSettings, run_sweep
@@ -242,7 +243,7 @@ def conform(
     records = _records(own, settings, folder, jobs, part(0.2, 0.5))
     runs = [_judged(*both, asked.system) for both in zip(own, records, strict=True)]
     worst = max(range(len(runs)), key=lambda i: (not runs[i].error, runs[i].used))
-    refined = _refined(asked, own[worst], runs[worst], settings, folder, part(0.5, 0.95))
+    refined = _refined(asked, own[worst], runs[worst], settings, folder, jobs, part(0.5, 0.95))
     curve = elasticity(shape, progress=part(0.95, 1.0))
     return Conformity(
         asked=asked,
@@ -280,10 +281,12 @@ def _judged(case: SweepCase, record: Record, system: PowerSystem) -> JudgedRun:
 
 
 def _refined(
-    asked: Asked, case: SweepCase, run: JudgedRun, settings: SweepSettings, folder: str | Path,
+    asked: Asked, case: SweepCase, run: JudgedRun, settings: SweepSettings, folder: str | Path, jobs: int,
     progress: Progress | None,
 ) -> dict[str, JudgedRun]:  # fmt: skip
-    """The same run on a finer mesh, with a finer step, and linearised."""
+    """The same run on a finer mesh, with a finer step, and linearised, side by side."""
+    from joblib import Parallel, delayed
+
     half = replace(asked.time, step=asked.time.step / 2)
     variants = {
         "elements halved": replace(settings, mesh=asked.mesh.halved()),
@@ -293,12 +296,22 @@ def _refined(
     found = {"as run": run}
     if run.error:
         return found
-    for n, (name, own) in enumerate(variants.items(), start=1):
-        (record,) = _records([case], own, folder, 1, None)
-        found[name] = _judged(case, record, asked.system)
-        if progress:
-            progress(n / len(variants))
+    with processes_of(None), manager_may_stumble():
+        tasks = [
+            delayed(_records)([case], own, Path(folder, "refined", slug(name)), 1, None)
+            for name, own in variants.items()
+        ]
+        records = Parallel(n_jobs=jobs, return_as="generator", batch_size=1, pre_dispatch="all")(tasks)
+        for n, (name, (record,)) in enumerate(zip(variants, records, strict=True), start=1):
+            found[name] = _judged(case, record, asked.system)
+            if progress:
+                progress(n / len(variants))
     return found
+
+
+def slug(name: str) -> str:
+    """What was changed, as a folder's name."""
+    return name.replace(" ", "_")
 
 
 def static_checks(shape: Shape) -> list[Check]:

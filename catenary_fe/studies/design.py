@@ -269,9 +269,11 @@ def _rounded(value: Any) -> Any:
 
 
 def _used(row: Criterion) -> float:
-    """Share of a limit; above 1 where it is missed, and only there, whatever tolerance it has."""
+    """Share of a limit, above 1 where it is missed, and only there; none of what the run itself sets."""
     used = float(row.used or 0.0)
-    return max(used, _MISSED) if row.passed is False else min(used, 1.0)
+    if row.passed is False:
+        return max(used, _MISSED)
+    return 0.0 if row.tolerance else min(used, 1.0)
 
 
 def _case_rows(case: SweepCase, record: Record, figure: str, system: Any) -> list[Row]:

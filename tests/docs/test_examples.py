@@ -66,6 +66,23 @@ def tutorial(folder):
     assert (folder / "first_run" / "report.html").stat().st_size > 1e6
 
 
+def tutorial_real_line(folder):
+    """What the search is said to gain, up to which speed the line is good, and what the pack says."""
+    found = json.loads((folder / "design" / "design.json").read_text(encoding="utf-8"))
+    start, best = (found["nonlinear"][which] for which in ("start", "best"))
+    assert start["objective"] == pytest.approx(31, abs=1) and start["largest_share_of_limit"] > 1
+    assert best["objective"] == pytest.approx(18, abs=1) and best["largest_share_of_limit"] <= 1
+    made = json.loads((folder / "speeds" / "sweep.json").read_text(encoding="utf-8"))
+    missed = {
+        case["values"]["speed_kmh"]: {row["name"] for row in case["criteria"] if row["passed"] is False}
+        for case in made["cases"]
+    }
+    assert not missed[200] and not missed[250] and missed[300] == {"twice the uplift at steady arms"}
+    verdicts = json.loads((folder / "pack" / "conform.json").read_text(encoding="utf-8"))["verdicts"]
+    assert len(verdicts) == 7 and all(row["passed"] for row in verdicts)
+    assert all((folder / "pack" / row["file"]).is_file() for row in verdicts)
+
+
 def form_of(folder):
     return json.loads((folder / "form.json").read_text(encoding="utf-8"))
 
@@ -118,6 +135,7 @@ def sections_and_overlaps(folder):
 CLAIMS = {
     "sections_and_overlaps": sections_and_overlaps,
     "tutorial": tutorial,
+    "tutorial_real_line": tutorial_real_line,
     "whole_line": whole_line,
     "curves": curves,
     "changing_heights": changing_heights,

@@ -142,7 +142,7 @@ def test_places_tied_apart_and_numbers_of_droppers(study, tmp_path):
 def test_a_search_that_was_stopped_ends_with_the_same_design(study, tmp_path, capsys):
     """Also by the command, whose folder has the best line; runs that are kept are not run again."""
     study(TENSION + '"span.*.pre_sag" = { between = [0.0, 0.03] }\n')
-    command = ["optimise", str(tmp_path / "study.toml"), "--most", "9", "--no-nonlinear", "--jobs", "1",
+    command = ["optimise", str(tmp_path / "study.toml"), "--most", "16", "--no-nonlinear", "--jobs", "1",
                "--time-step-ms", "4", "--element-m", "4", "--json", "-o"]  # fmt: skip
     assert main([*command, str(tmp_path / "out")]) == 0
     whole = json.loads(capsys.readouterr().out)
@@ -197,7 +197,7 @@ def test_a_limit_with_a_tolerance_is_used_as_the_criterion_has_it():
     given = {"name": "mean force", "unit": "N", "source": "", "limit": 100.0}
     within = cf.Criterion(value=100.3, tolerance=0.5, **given)
     assert within.used > 1 and within.passed
-    assert _used(within) == 1.0
+    assert _used(within) == 0.0  # the run sets it there itself: no margin that a design could change
     assert _used(cf.Criterion(value=100.6, tolerance=0.5, **given)) == pytest.approx(1.006)
     at_limit = cf.Criterion(value=100.0, relation="above", **given)
     assert at_limit.passed is False and _used(at_limit) > 1

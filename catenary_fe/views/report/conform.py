@@ -9,7 +9,7 @@ from catenary_fe.results.check import checks_table
 from catenary_fe.results.criteria import criteria_table
 from catenary_fe.results.quantities import FORCE, UPLIFT
 from catenary_fe.statics import Shape
-from catenary_fe.studies.conform import Conformity
+from catenary_fe.studies.conform import Conformity, slug
 from catenary_fe.views.layout import plot_layout
 from catenary_fe.views.report.page import svg_address, template
 from catenary_fe.views.report.tables import Table
@@ -64,11 +64,6 @@ def conformity_page(found: Conformity, shape: Shape, record: Mapping[str, Any]) 
         "inputs": record["inputs"],
     }
     return template("conform.html.j2").render(content)
-
-
-def slug(name: str) -> str:
-    """What was changed, as a folder's name."""
-    return name.replace(" ", "_")
 
 
 def _known(found: Conformity) -> Table:
