@@ -25,7 +25,7 @@ from catenary_fe.views.stretch import (
 )
 
 RUN_OFF = 0.3  # [m] above the design line: higher wires run off to their anchors
-_LEFT = "#e6a07c"  # the left contact wire, of two; of several sections those of every second one
+SHADES = (style.CONTACT, "#e6a07c")  # of right and left contact wire, or of neighbouring sections
 
 
 @checked
@@ -65,7 +65,7 @@ def _heights(
         label = None if number else "contact wire as designed"
         ax.plot(x, 1e3 * (wire.height(x) - nominal(x)), "--", color=style.DROPPER, linewidth=0.9, label=label)
     named: set[str] = set()
-    for wire, name, colour in _contact_wires(shape):
+    for wire, name, colour in named_contact_wires(shape):
         x = part.sampled(wire.x)
         height = wire.height(x) - nominal(x)
         height[height > RUN_OFF] = np.nan
@@ -90,9 +90,9 @@ def _heights(
     return _finished(ax, part, f"height above {above} (mm)", what)
 
 
-def _contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
+def named_contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
     """Each contact wire with its name and colour; sections that are neighbours differ."""
-    colours = (style.CONTACT, _LEFT)
+    colours = SHADES
     if isinstance(shape, LineShape):
         numbers = range(1, len(shape.sections) + 1)
         names = [
@@ -140,7 +140,10 @@ def _kinds(shape: Shape) -> list[tuple[str, str, np.ndarray]]:
     mesh = shape.mesh
     if len(shape.catenary.contact_wire_offsets) > 1 and not isinstance(shape, LineShape):
         right = mesh.lower.wire == 0
-        return [("holds the right contact wire", style.CONTACT, right), ("holds the left one", _LEFT, ~right)]
+        return [
+            ("holds the right contact wire", style.CONTACT, right),
+            ("holds the left one", SHADES[1], ~right),
+        ]
     stitch = mesh.upper.wire >= mesh.first_stitch
     return [("on the messenger wire", style.MESSENGER, ~stitch), ("on a stitch wire", style.STITCH, stitch)]
 
