@@ -12,9 +12,10 @@ from catenary_fe.fe.contact import place
 from catenary_fe.layout import read_catenary
 from catenary_fe.results import quality
 from catenary_fe.statics.newton import static_contact
-from catenary_fe.views import plot_layout
+from catenary_fe.views import plot_layout, plot_run_waves
 from catenary_fe.views.film import scene
 from catenary_fe.views.report.tables import schedule_table
+from catenary_fe.views.waves import joined_wire
 from tests.conftest import LAYOUTS
 
 SPEED = 250 / 3.6
@@ -228,6 +229,20 @@ def test_films_hang_droppers_on_their_own_section(shape: cf.Shape, pantograph: c
         heights = [seen.heights(i, frame) for i in range(len(seen.wires))]
         assert 5.25 < seen.head_height(0, frame, heights) < 5.5, x
     assert np.all(np.abs(rest - 5.3) < 0.02), at[np.abs(rest - 5.3).argmax()]
+
+
+def test_waves_are_those_of_both_sections(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
+    """Each section's wire up to the middle of the overlap, at 270 m."""
+    run = cf.simulate(shape, [pantograph], speed=SPEED, method="linearised", store_wire=0.1)
+    shown = plot_run_waves(run, quantity="deflection", spans=range(1, 10))
+    assert shown.get_xlim() == pytest.approx((0.0, 540.0), abs=5.0)
+    first, second = run.wires()[:2]
+    joined = joined_wire(run, "contact wire")
+    assert np.all(np.diff(joined.x) > 0)
+    for at, of in ((100.0, first), (250.0, first), (290.0, second), (500.0, second)):
+        own, there = np.abs(joined.x - at).argmin(), np.abs(of.x - at).argmin()
+        assert joined.height[:, own] == pytest.approx(of.height[:, there], abs=0)
+    assert np.array_equal(joined_wire(run, "section 2 contact wire").x, second.x)
 
 
 def test_an_effect_on_the_line_is_not_lost(shape: cf.Shape, pantograph: cf.Pantograph) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -21,8 +21,8 @@ from catenary_fe.views.style import (
     MESSENGER,
     SLACK,
     SUPPORT,
+    distinct,
     pantograph_colour,
-    sequence,
     wire_colour,
 )
 
@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 _POINTS = 8000  # of a curve
 _MOTION = 4_000_000  # [bytes] of the player's wire shapes, before base64
 _RANGE = 32_000  # of 16-bit numbers
-_UPLIFTS = 60_000  # numbers of all supports' uplift together
+_UPLIFTS = 160_000  # numbers of all supports' uplift together
 
 
 def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
@@ -61,7 +61,7 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
 def uplift_chart(run: Run) -> dict[str, Any]:
     """Uplift at the supports against time, in mm."""
     count = run.data.sizes["support"]
-    every = _stride(run.time.size, min(_POINTS // 4, _UPLIFTS // count))
+    every = _stride(run.time.size, min(_POINTS // 2, _UPLIFTS // count))
     uplift = 1e3 * run.data["support_uplift"].values[:, ::every]
     inner = range(1, uplift.shape[0] - 1)
     evaluated = [n - 1 for n in run.uplift_by_support() if n - 1 in inner]
@@ -74,7 +74,7 @@ def uplift_chart(run: Run) -> dict[str, Any]:
             "spans": [i, i + 1],
             "values": _numbers(uplift[i], 1),
         }
-        for i, colour in zip(inner, sequence(len(inner)), strict=True)
+        for i, colour in zip(inner, cycle(distinct(8)), strict=False)
     ]
     supports, x = run.data["support_position"].values, run.data["position"].values
     begin, end = supports[min(run.evaluated_spans) - 1], supports[max(run.evaluated_spans)]

@@ -19,8 +19,7 @@
 
   function inWords(numbers) {
     const first = numbers[0], last = numbers[numbers.length - 1];
-    if (numbers.length === 1) return `${first}`;
-    return last - first === numbers.length - 1 ? `${first} to ${last}` : numbers.join(", ");
+    return last - first === numbers.length - 1 && numbers.length > 2 ? `${first} to ${last}` : numbers.join(", ");
   }
 
   function fillChooser() {
@@ -47,6 +46,8 @@
       if (uplift.series[i + 1].show !== wanted) uplift.setSeries(i + 1, { show: wanted });
       uplift.root.querySelectorAll(".u-series")[i + 1].classList.toggle("unchosen", !wanted);
     });
+    const shown = uplift.series.filter((s) => s.show).length - 1;
+    uplift.root.classList.toggle("crowded", shown > 12);
     for (const table of document.querySelectorAll(".of-spans")) {
       let rows = 0;
       for (const row of table.querySelectorAll("tr[data-spans]")) {
