@@ -16,7 +16,7 @@ from catenary_fe.statics import Shape
 from catenary_fe.views import style
 from catenary_fe.views.heights import plot_heights
 from catenary_fe.views.layout import head_width, plot_layout, plot_plan
-from catenary_fe.views.static import plot_static_shape
+from catenary_fe.views.static import SHADES, plot_static_shape
 
 _NAMED = 12  # supports that a legend has room for
 _COLOURS = {"passed": "#3a7d44", "missed": "#b3261e", "not judged": "#9a9a9a"}
@@ -136,13 +136,13 @@ def _draw_handover(
     zone: tuple[float, float],
     filter: FilterKind,
 ) -> None:
-    x, colours = run.data["position"].values[pantograph], style.distinct(len(forces))
+    x = run.data["position"].values[pantograph]
     inside = (x >= zone[0]) & (x <= zone[1])
     supports = run.data["support_position"].values
     style.mark_supports(ax, supports[(supports >= zone[0] - 1e-6) & (supports <= zone[1] + 1e-6)])
     for section in (number - 1, number):
         ax.plot(
-            x[inside], forces[section][inside], color=colours[section], linewidth=1.0,
+            x[inside], forces[section][inside], color=SHADES[section % 2], linewidth=1.0,
             label=f"on section {section + 1}, unfiltered",
         )  # fmt: skip
     total = low_pass(run.data["contact_force"].values[pantograph], run.step, kind=filter)

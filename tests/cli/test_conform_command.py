@@ -63,7 +63,9 @@ def test_the_installation_passes_and_the_weak_line_misses(folder, record):
     fast = verdicts["300 km/h, one pantograph"]
     assert not fast["passed"] and "standard deviation" in fast["verdict"] and "speed" in fast["verdict"]
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert fast["verdict"] in page and "300 km/h, one pantograph" in re.search(r'class="missed">(.*?)<', page)[1]
+    assert (
+        fast["verdict"] in page and "300 km/h, one pantograph" in re.search(r'class="missed">(.*?)<', page)[1]
+    )
 
 
 def test_every_number_is_in_a_file_of_the_folder(folder, record):
