@@ -242,6 +242,8 @@ def test_the_player_follows_a_ramp(whole_line):
             rest = max(5.3, 5.5 - 0.05 * x / 60)
             assert rest - 0.05 < head["height"] < rest + 0.12, x
     assert found[2][2][0]["wire"] == 1  # of the second section
+    browser.execute_script("player.goTo([405])")  # where the first section's wire still is, but runs off
+    assert browser.execute_script("return player.heads[0].wire") == 1
 
 
 def test_numbers_of_supports_stay_clear(whole_line):
