@@ -180,7 +180,8 @@ def forget_partial(folder: Folder) -> None:
 
 
 _OF_A_RUN = (  # they would describe another run
-    "criteria.png", "energy.png", "plan.png", "report.html",
+    "contact_lateral.png", "criteria.png", "energy.png", "handover.png", "heights.png", "plan.png",
+    "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
 
