@@ -187,7 +187,7 @@ def form(
             "warnings": layout_warnings(catenary),
         }
         if folder:
-            from catenary_fe.views import plot_layout, plot_plan, plot_static_shape
+            from catenary_fe.views import plot_heights, plot_layout, plot_plan, plot_static_shape
 
             folder.json("form.json", result)
             write_schedules(folder, shape, xlsx)
@@ -199,6 +199,8 @@ def form(
             folder.picture("static_shape.png", plot_static_shape(shape, spans=spans, design=design))
             if line.is_spatial:
                 folder.picture("plan.png", plot_plan(shape, spans=spans))
+            if shape.catenary.changes_height:
+                folder.picture("heights.png", plot_heights(shape, spans=spans))
 
     def tables() -> None:
         print_schedules(shape)

@@ -21,6 +21,7 @@ from catenary_fe.layout import (
     RunInterrupted,
     SolverError,
 )
+from catenary_fe.layout.arguments import listed
 from catenary_fe.results import checks_in_words, criteria_in_words
 from catenary_fe.results.check import checks_table
 from catenary_fe.results.criteria import criteria_table
@@ -179,7 +180,8 @@ def forget_partial(folder: Folder) -> None:
 
 
 _OF_A_RUN = (  # they would describe another run
-    "criteria.png", "energy.png", "plan.png", "report.html",
+    "contact_lateral.png", "criteria.png", "energy.png", "handover.png", "heights.png", "plan.png",
+    "report.html",
     "csv/pantograph_[0-9].csv", "csv/support_uplift.csv", "csv/dropper_force.csv",
 )  # fmt: skip
 
@@ -220,5 +222,5 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
 
 
 def _heading(title: str, summary: dict[str, Any]) -> str:
-    spans = ", ".join(map(str, summary["evaluated_spans"]))
+    spans = listed(summary["evaluated_spans"])
     return f"{title}, {summary['speed_kmh']:g} km/h, spans {spans}, {summary['filter']} 20 Hz filter"

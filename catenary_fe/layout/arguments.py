@@ -123,6 +123,26 @@ def span_numbers(spans: Iterable[int] | None, last: int, otherwise: Sequence[int
     return [int(value) for value in found]
 
 
+def runs(numbers: Iterable[int]) -> list[tuple[int, int]]:
+    """First and last of each run of consecutive numbers."""
+    found: list[tuple[int, int]] = []
+    for n in sorted(set(numbers)):
+        if found and n == found[-1][1] + 1:
+            found[-1] = (found[-1][0], n)
+        else:
+            found.append((n, n))
+    return found
+
+
+def listed(numbers: Iterable[int]) -> str:
+    """``2, 3`` or ``5 to 14, 16``: how texts list numbers of spans; three and more in a row are shortened."""
+    parts = [
+        f"{first} to {last}" if last - first > 1 else ", ".join(map(str, range(first, last + 1)))
+        for first, last in runs(numbers)
+    ]
+    return ", ".join(parts)
+
+
 def one_of(name: str, value: object, choices: Sequence[Any]) -> None:
     """Raises InputError for what is not among the choices."""
     if not isinstance(value, str) or value not in choices:

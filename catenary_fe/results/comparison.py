@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from catenary_fe.layout import InputError
+from catenary_fe.layout.arguments import listed
 from catenary_fe.results.check import FAILED
 from catenary_fe.results.quantities import (
     CHECKS_FAILED,
@@ -120,7 +121,7 @@ def _inputs(run: Run) -> dict[str, list[Any]]:
     record = {
         "speed (km/h)": round(3.6 * run.speed, 9),
         "method": run.method,
-        "evaluated spans": ", ".join(map(str, run.evaluated_spans)),
+        "evaluated spans": listed(run.evaluated_spans),
         "start (m)": run.data["position"].values[:, 0].round(9).tolist(),
         "number of spans": len(run.catenary.spans),
         "number of droppers": len(run.catenary.droppers),

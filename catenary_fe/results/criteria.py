@@ -9,7 +9,7 @@ from operator import ge, gt, le
 from typing import Any, Literal, get_args
 
 from catenary_fe.layout import AnyPantograph, Catenary, InputError
-from catenary_fe.layout.arguments import checked, one_of
+from catenary_fe.layout.arguments import checked, listed, one_of
 from catenary_fe.layout.current_collection import (
     DEVIATION_SHARE,
     MEAN_FORCE_TOLERANCE,
@@ -298,7 +298,7 @@ def _uplift(figures: KeyFigures) -> list[Criterion]:
         source = f"room for {UPLIFT_FACTOR:g} times the uplift (recalled), support {tightest}"
         rows.append(_uplift_row(uplift[tightest], 1e3 * clearances[tightest], source))
     if unknown:
-        source = f"no uplift_room given, support {', '.join(map(str, unknown))}"
+        source = f"no uplift_room given, support {listed(unknown)}"
         rows.append(_uplift_row(max(uplift[i] for i in unknown), None, source))
     return rows
 

@@ -64,7 +64,9 @@ class WireHistory:
 
 
 def wire_histories(data: xr.Dataset) -> tuple[WireHistory, ...]:
-    """All wires that a run stored, contact wires first.
+    """All wires that a run stored: contact wires first, in the order of the sections, the right one first.
+
+    The order of a file's variables does not matter.
 
     Raises InputError where the run stored none.
     """
@@ -74,7 +76,7 @@ def wire_histories(data: xr.Dataset) -> tuple[WireHistory, ...]:
             "the run holds no wire shapes; run again with --store-wire-ms 10 (store_wire=0.01 in Python)"
         )
     wires = [_history(data, name) for name in names]
-    return tuple(sorted(wires, key=lambda wire: not wire.touched))
+    return tuple(sorted(wires, key=lambda wire: (not wire.touched, wire.section, "left" in wire.name)))
 
 
 def _history(data: xr.Dataset, variable: str) -> WireHistory:

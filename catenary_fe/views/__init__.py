@@ -5,6 +5,7 @@ from catenary_fe.views.comparison import plot_force_comparison, plot_uplift_comp
 from catenary_fe.views.design import plot_design
 from catenary_fe.views.dxf import write_dxf
 from catenary_fe.views.film import film
+from catenary_fe.views.heights import plot_heights
 from catenary_fe.views.layout import plot_layout, plot_plan
 from catenary_fe.views.line_test import plot_line_test
 from catenary_fe.views.pantograph import plot_pantograph
@@ -38,7 +39,7 @@ __all__ = [
     "film", "plot_cases", "plot_contact_force", "plot_contact_lateral", "plot_criteria",
     "plot_design", "plot_dropper_forces", "plot_elasticity", "plot_energy",
     "plot_family", "plot_force_bands", "plot_force_comparison", "plot_force_envelopes",
-    "plot_force_spectrum", "plot_handover", "plot_layout", "plot_line_test",
+    "plot_force_spectrum", "plot_handover", "plot_heights", "plot_layout", "plot_line_test",
     "plot_mode", "plot_pantograph", "plot_plan", "plot_run_waves", "plot_scatter", "plot_scatter_inputs",
     "plot_sensitivity", "plot_space_time", "plot_spectrum",
     "plot_static_shape", "plot_support_uplift", "plot_surface", "plot_sweep_deviation", "plot_sweep_forces",

@@ -59,6 +59,17 @@ class Scene:
         heights: Floats = history.static + magnified * history.uplift[frame]
         return heights
 
+    def head_height(self, pantograph: int, frame: int, heights: Sequence[Floats]) -> float:
+        """[m] of the contact wire that a head is under, the lowest of those that are there.
+
+        heights : as drawn, of each wire
+        """
+        x = self.pantograph_x[pantograph, frame]
+        there = [i for i, w in enumerate(self.wires) if w.touched and w.x[0] <= x <= w.x[-1]]
+        true = {i: float(np.interp(x, self.wires[i].x, self.heights(i, frame))) for i in there}
+        lowest = min(true, key=true.__getitem__)
+        return float(np.interp(x, self.wires[lowest].x, heights[lowest]))
+
     def mass_heights(self, pantograph: int, magnified: float = 1.0) -> Floats:
         """[m], shape (masses, frames), that masses are drawn at: below the wire at rest, motion magnified."""
         motion = self.masses[pantograph]
@@ -251,10 +262,9 @@ class _View:
         for line, wire, z in zip(moving["wires"], scene.wires, heights, strict=True):
             line.set_data(wire.x, z)
         self._move_droppers(moving, scene, frame, heights)
-        contact = scene.wires[0]
         for i, (head, point) in enumerate(zip(moving["heads"], moving["points"], strict=True)):
             x = scene.pantograph_x[i, frame]
-            top = float(np.interp(x, contact.x, heights[0])) - 0.06
+            top = scene.head_height(i, frame, heights) - 0.06
             below = scene.mass_heights(i, self.magnified)[1:, frame] - 0.06
             head.set_data([x] * (below.size + 2), [top, *below, self._wires.get_ylim()[0]])
             point.set_data([x], [scene.force[i, frame]])

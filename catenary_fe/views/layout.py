@@ -104,7 +104,9 @@ def _draw_supports(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], l
     if arms:
         at, size = (x[arms], wire[arms]), 5 if part.is_close else 3
         ax.plot(*at, "o", color=style.SUPPORT, markersize=size, fillstyle="none", label="steady arm")
-    style.label_row(ax, x, tops, [str(i + 1) for i in part.supports], size=8, above=6)
+    above = max(float(tops.max()), *(float(line.z.max()) for line in lines if line.z.size))
+    room = 0.03 * np.ptp(ax.get_ylim())
+    style.number_row(ax, x, above + room, [i + 1 for i in part.supports])
 
 
 def _draw_equipment(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line]) -> None:
@@ -158,9 +160,8 @@ def _draw_ends(ax: Axes, part: stretch.Stretch) -> None:
 
 def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line], low: float) -> None:
     x, spans = part.support_x, [part.catenary.spans[n - 1] for n in part.spans]
-    middles = (x[:-1] + x[1:]) / 2
     if not part.is_close:
-        style.label_row(ax, middles, low + 0.2, [f"{span.length:g} m" for span in spans], size=8)
+        _span_lengths(ax, x, low + 0.2, [span.length for span in spans])
         return
     for n, span, a, b in zip(part.spans, spans, x[:-1], x[1:], strict=True):
         _dimension(ax, (a, low + 0.2), (b, low + 0.2), f"span {n}: {span.length:g} m")
@@ -178,6 +179,21 @@ def _draw_dimensions(ax: Axes, part: stretch.Stretch, lines: list[stretch.Line],
     )
     at = x[0] + 0.006 * (part.end - part.start)
     _dimension(ax, (at, bottom), (at, top), f"system height {round(top - bottom, 3):g} m", vertical=True)
+
+
+def _span_lengths(ax: Axes, x: np.ndarray, z: float, lengths: Sequence[float]) -> None:
+    """The length of each span; where there is no room, of each run of equal spans, with their number."""
+    texts = [f"{length:g} m" for length in lengths]
+    middles = (x[:-1] + x[1:]) / 2
+    if style.rotation_that_fits(ax, middles, texts, 8) == 0:
+        style.label_row(ax, middles, z, texts, size=8)
+        return
+    groups = [list(numbers) for _, numbers in groupby(range(len(lengths)), key=lambda i: texts[i])]
+    ends = [(float(x[group[0]]), float(x[group[-1] + 1])) for group in groups]
+    texts = [f"{len(group)} × {texts[group[0]]}" if len(group) > 1 else texts[group[0]] for group in groups]
+    if style.rotation_that_fits(ax, [sum(pair) / 2 for pair in ends], texts, 8) == 0:
+        for (a, b), text in zip(ends, texts, strict=True):
+            _dimension(ax, (a, z), (b, z), text)
 
 
 def _dimension(
@@ -231,7 +247,7 @@ def _draw_plan(ax: Axes, part: stretch.Stretch, shape: Shape, width: float) -> N
     low, high = ax.get_ylim()
     ax.set_ylim(low - 0.25 * (high - low), high + 0.3 * (high - low))
     above = high + 0.08 * (high - low)
-    style.label_row(ax, part.support_x, above, [str(i + 1) for i in part.supports], size=8, above=1)
+    style.number_row(ax, part.support_x, above, [i + 1 for i in part.supports])
     _draw_curves(ax, part)
     title = f"{catenary.name}: plan{part.where}, {_curve(part)}; lateral positions much exaggerated"
     style.finish(ax, "position along the track (m)", "to the left of the track (m)", title)
@@ -339,10 +355,7 @@ def _draw_arms_of(
 
 
 def _name_forces(ax: Axes, ends: Sequence[tuple[float, float]], texts: Sequence[str]) -> None:
-    """Beside the arms' ends, upright where there is little room, to the left of the last one."""
-    rotation = style.rotation_that_fits(ax, [x for x, _ in ends], texts, 8)
-    if rotation is None:
-        return
-    for i, (place, text) in enumerate(zip(ends, texts, strict=True), start=1):
-        offset, side = (-6, "right") if i == len(ends) else (6, "left")
-        style.annotate(ax, text, place, (offset, 0), ha=side, va="center", rotation=rotation)
+    """Beside the arms' ends, upright where there is little room, and left out where there is none."""
+    first = {x: text for (x, _), text in zip(ends, texts, strict=True)}  # of arms at one support
+    rotation = style.rotation_that_fits(ax, list(first), list(first.values()), 8)
+    style.label_beside(ax, ends, texts, upright=rotation != 0)

@@ -8,14 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from catenary_fe.layout import InputError, Line
-from catenary_fe.layout.arguments import checked, number, whole
+from catenary_fe.layout.arguments import checked, number, runs, whole
 from catenary_fe.results import Criterion, ForceStatistics, Run, labels, spectrum
 from catenary_fe.results.quantities import in_short
 from catenary_fe.results.signal import CUT_OFF, FilterKind, low_pass
 from catenary_fe.statics import Shape
 from catenary_fe.views import style
+from catenary_fe.views.heights import plot_heights
 from catenary_fe.views.layout import head_width, plot_layout, plot_plan
-from catenary_fe.views.static import plot_static_shape
+from catenary_fe.views.static import SHADES, plot_static_shape
 
 _NAMED = 12  # supports that a legend has room for
 _COLOURS = {"passed": "#3a7d44", "missed": "#b3261e", "not judged": "#9a9a9a"}
@@ -28,6 +29,8 @@ def run_pictures(run: Run, shape: Shape, filter: FilterKind) -> Iterator[tuple[s
     yield "static_shape", plot_static_shape(shape)
     if shape.catenary.is_spatial:
         yield "plan", plot_plan(shape, head_width=head_width(run.pantographs))
+    if shape.catenary.changes_height:
+        yield "heights", plot_heights(shape, speed=run.speed)
     yield "contact_force", plot_contact_force(run, filter=filter)
     if "section_force" in run.data:
         yield "handover", plot_handover(run, filter=filter)
@@ -133,13 +136,13 @@ def _draw_handover(
     zone: tuple[float, float],
     filter: FilterKind,
 ) -> None:
-    x, colours = run.data["position"].values[pantograph], style.distinct(len(forces))
+    x = run.data["position"].values[pantograph]
     inside = (x >= zone[0]) & (x <= zone[1])
     supports = run.data["support_position"].values
     style.mark_supports(ax, supports[(supports >= zone[0] - 1e-6) & (supports <= zone[1] + 1e-6)])
     for section in (number - 1, number):
         ax.plot(
-            x[inside], forces[section][inside], color=colours[section], linewidth=1.0,
+            x[inside], forces[section][inside], color=SHADES[section % 2], linewidth=1.0,
             label=f"on section {section + 1}, unfiltered",
         )  # fmt: skip
     total = low_pass(run.data["contact_force"].values[pantograph], run.step, kind=filter)
@@ -159,7 +162,7 @@ def _in_words(s: ForceStatistics | None) -> str:
 
 def _draw_statistics(ax: Axes, run: Run, statistics: ForceStatistics, colour: str, named: bool) -> None:
     """Mean and mean ± 3σ over each run of evaluated spans."""
-    supports, groups = run.data["support_position"].values, np.array(style.runs(run.evaluated_spans))
+    supports, groups = run.data["support_position"].values, np.array(runs(run.evaluated_spans))
     for value, line, name in (
         (statistics.mean, "-", "mean"),
         (statistics.statistical_max, "--", "mean ± 3σ"),
@@ -228,13 +231,15 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     style.mark_supports(ax, run.data["support_position"].values)
     style.mark_spans(ax, run.data["support_position"].values, run.evaluated_spans)
     low, high = forces.min(axis=1), forces.max(axis=1)
-    ax.vlines(x, low, high, color=style.DROPPER, linewidth=2.0, label="range during the run")
-    ax.plot(x, forces[:, 0], ".", color=style.PANTOGRAPHS[0], markersize=6, label="at the start")
+    ax.vlines(x, low, high, color=style.DROPPER, linewidth=min(2.0, 300 / x.size),
+              label="range during the run")  # fmt: skip
+    size = 6 if x.size < 200 else 3
+    ax.plot(x, forces[:, 0], ".", color=style.MESSENGER, markersize=size, label="at the start")
     slack = run.slackened_droppers
     if slack.size:
         share = np.mean(forces[slack] <= 0) * 100
         name = f"went slack: {slack.size} of {x.size}, {share:.1f} % of the time"
-        ax.plot(x[slack], low[slack], "v", color=style.PANTOGRAPHS[1], markersize=5, label=name)
+        ax.plot(x[slack], low[slack], "v", color=style.SLACK, markersize=0.8 * size, label=name)
     style.legend(ax, 2, "upper right")
     style.headroom(ax, 0.18)
     return style.finish_run(ax, run, style.ALONG, "dropper force (N)", ": dropper forces")

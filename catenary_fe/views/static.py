@@ -14,10 +14,18 @@ from catenary_fe.results import Elasticity
 from catenary_fe.results.modes import IN_WORDS, Modes, WireShapes
 from catenary_fe.statics import HangingWire, LineShape, Shape
 from catenary_fe.views import style
-from catenary_fe.views.stretch import Stretch, evaluated_pair, frame, mark_detail, overlap_spans, stretch
+from catenary_fe.views.stretch import (
+    Stretch,
+    evaluated_pair,
+    frame,
+    legend,
+    mark_detail,
+    overlap_spans,
+    stretch,
+)
 
 RUN_OFF = 0.3  # [m] above the design line: higher wires run off to their anchors
-_LEFT = "#e6a07c"  # the left contact wire, of two
+SHADES = (style.CONTACT, "#e6a07c")  # of right and left contact wire, or of neighbouring sections
 
 
 @checked
@@ -56,11 +64,14 @@ def _heights(
         x = part.sampled(wire.x)
         label = None if number else "contact wire as designed"
         ax.plot(x, 1e3 * (wire.height(x) - nominal(x)), "--", color=style.DROPPER, linewidth=0.9, label=label)
-    for wire, name, colour in _contact_wires(shape):
+    named: set[str] = set()
+    for wire, name, colour in named_contact_wires(shape):
         x = part.sampled(wire.x)
         height = wire.height(x) - nominal(x)
         height[height > RUN_OFF] = np.nan
-        ax.plot(x, 1e3 * height, color=colour, linewidth=1.4, label=name)
+        label = None if name in named else name
+        ax.plot(x, 1e3 * height, color=colour, linewidth=1.4, label=label)
+        named.add(name)
     chosen = part.inside(catenary.dropper_positions)
     chosen &= catenary.design_heights - nominal(catenary.dropper_positions) < RUN_OFF
     x = catenary.dropper_positions[chosen]
@@ -79,20 +90,22 @@ def _heights(
     return _finished(ax, part, f"height above {above} (mm)", what)
 
 
-def _contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
-    """Each contact wire with its name and colour; those of the same side of all sections look alike."""
+def named_contact_wires(shape: Shape) -> list[tuple[HangingWire, str, str]]:
+    """Each contact wire with its name and colour; sections that are neighbours differ."""
+    colours = SHADES
+    if isinstance(shape, LineShape):
+        numbers = range(1, len(shape.sections) + 1)
+        names = [
+            f"contact wire, section{'s' if len(own) > 1 else ''} {', '.join(map(str, own[:3]))}"
+            f"{' ...' if len(own) > 3 else ''}"
+            for own in (numbers[::2], numbers[1::2])
+        ]
+        parity = [int(section) % 2 for section in shape.joint.section]
+        wires = zip(shape.contact_wires, parity, strict=False)
+        return [(wire, names[which], colours[which]) for wire, which in wires]
     sides = len(shape.catenary.contact_wire_offsets)
     names = ["right contact wire", "left contact wire"] if sides > 1 else ["contact wire"]
-    found = []
-    for number, wire in enumerate(shape.contact_wires):
-        if isinstance(shape, LineShape):
-            section = int(shape.joint.section[number]) + 1
-            found.append(
-                (wire, f"contact wire, section {section}", style.distinct(len(shape.sections))[section - 1])
-            )
-        else:
-            found.append((wire, names[number], (style.CONTACT, _LEFT)[number]))
-    return found
+    return list(zip(shape.contact_wires, names, colours, strict=False))
 
 
 def _tensions(ax: Axes, shape: Shape, part: Stretch, design: Shape | None = None) -> Axes:
@@ -110,7 +123,7 @@ def _tensions(ax: Axes, shape: Shape, part: Stretch, design: Shape | None = None
     for name, colour, of_kind in _kinds(shape):
         mine = of_kind[chosen]
         if mine.any():
-            ax.vlines(x[mine], 0, forces[mine], color=colour, linewidth=1.6, label=name)
+            ax.vlines(x[mine], 0, forces[mine], color=colour, linewidth=min(1.6, 300 / x.size), label=name)
             ax.plot(x[mine], forces[mine], ".", color=colour, markersize=4)
     ax.set_ylim(0, 1.45 * forces.max(initial=1.0))
     style.label_row(ax, x, forces, [f"{force:.0f}" for force in forces], above=3)
@@ -118,7 +131,7 @@ def _tensions(ax: Axes, shape: Shape, part: Stretch, design: Shape | None = None
 
 
 def _finished(ax: Axes, part: Stretch, y: str, what: str) -> Axes:
-    ax.legend(loc="upper left", fontsize=8, ncols=6, frameon=False)
+    legend(ax)
     return style.finish(ax, style.ALONG, y, f"{part.catenary.name}: {what}{part.where}")
 
 
@@ -127,7 +140,10 @@ def _kinds(shape: Shape) -> list[tuple[str, str, np.ndarray]]:
     mesh = shape.mesh
     if len(shape.catenary.contact_wire_offsets) > 1 and not isinstance(shape, LineShape):
         right = mesh.lower.wire == 0
-        return [("holds the right contact wire", style.CONTACT, right), ("holds the left one", _LEFT, ~right)]
+        return [
+            ("holds the right contact wire", style.CONTACT, right),
+            ("holds the left one", SHADES[1], ~right),
+        ]
     stitch = mesh.upper.wire >= mesh.first_stitch
     return [("on the messenger wire", style.MESSENGER, ~stitch), ("on a stitch wire", style.STITCH, stitch)]
 

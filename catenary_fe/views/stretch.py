@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from catenary_fe.layout import GRAVITY, Catenary
 from catenary_fe.layout import Line as SectionedLine
-from catenary_fe.layout.arguments import span_numbers
+from catenary_fe.layout.arguments import runs, span_numbers
 from catenary_fe.statics import Shape
-from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, runs, wire_colour
+from catenary_fe.views.style import SUPPORT, mark_spans, new_axes, new_panels, wire_colour
 
 Floats = NDArray[np.float64]
 CLOSE = 4  # spans that a picture can show with all their dimensions
@@ -142,14 +142,14 @@ def draw_line(
     if ax is not None or spans or part.is_close:
         ax = new_axes(ax, size)
         draw(ax, part)
-        _legend(ax)
+        legend(ax)
         return ax
     whole, close = new_panels((size[0], 2 * size[1]), (1, 1))
     detail = evaluated_pair(catenary, among)
     draw(whole, part)
     mark_detail(whole, detail)
     draw(close, detail)
-    _legend(whole)
+    legend(whole)
     return whole
 
 
@@ -161,7 +161,8 @@ def mark_detail(ax: Axes, detail: Stretch) -> None:
     )  # fmt: skip
 
 
-def _legend(ax: Axes) -> None:
+def legend(ax: Axes) -> None:
+    """What the lines and marks of a line's picture are, along its top."""
     ax.legend(loc="upper center", ncols=8, fontsize=8, frameon=False, handlelength=1.6, columnspacing=1.4)
 
 

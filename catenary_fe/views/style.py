@@ -15,6 +15,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from catenary_fe.layout.arguments import runs
 from catenary_fe.results import Run
 
 _Arguments = ParamSpec("_Arguments")
@@ -24,14 +25,14 @@ CONTACT = "#c44e1c"  # contact wire
 MESSENGER = "#1f5a85"  # messenger wire
 STITCH = "#3a7d44"  # stitch wire
 WIRES = {"contact wire": CONTACT, "messenger wire": MESSENGER, "stitch wire": STITCH}
-DROPPER = "#7a7a7a"
-SUPPORT = "#444444"
+DROPPER = "#8d959c"
+SUPPORT = "#111111"
 SLACK = "#d62728"  # a dropper that has gone slack
 EVALUATED = "#f3efe2"  # behind the evaluated spans
 OTHERS = "#c9c9c9"  # what is not evaluated
 ALONG = "position along the line (m)"
-PANTOGRAPHS = ("#1f5a85", "#c44e1c", "#3a7d44", "#7b4fa3")
-_MANY = (*PANTOGRAPHS, "#b8860b", "#2a8f8f", "#a33b5e", "#5a5a5a")
+PANTOGRAPHS = ("#7a2fb0", "#00a6a6", "#b07900", "#b0306a")  # unlike wires: both are in one picture
+_MANY = (*PANTOGRAPHS, "#1f5a85", "#c44e1c", "#3a7d44", "#5a5a5a")
 
 
 def wire_colour(name: str) -> str:
@@ -173,17 +174,6 @@ def mark_spans(
         label = None
 
 
-def runs(numbers: Iterable[int]) -> list[tuple[int, int]]:
-    """First and last of each run of consecutive numbers."""
-    found: list[tuple[int, int]] = []
-    for n in sorted(set(numbers)):
-        if found and n == found[-1][1] + 1:
-            found[-1] = (found[-1][0], n)
-        else:
-            found.append((n, n))
-    return found
-
-
 def rotation_that_fits(ax: Axes, x: ArrayLike, texts: Sequence[str], size: float) -> int | None:
     """Degrees by which texts, centred at ``x``, stay clear of each other: 0, or 90, or None where none does.
 
@@ -225,3 +215,52 @@ def label_row(
     for place, height, text in zip(np.asarray(x, dtype=float), places, texts, strict=True):
         annotate(ax, text, (place, height), (0, above), **options)
     return True
+
+
+def number_row(ax: Axes, x: ArrayLike, y: float, numbers: Sequence[int], *, size: float = 8) -> None:
+    """Write numbers in a row just above ``y``: all, or of many the first and every second, fifth, tenth ...
+
+    The axes need their limits.
+    """
+    places, every = np.asarray(x, dtype=float), (1, 2, 5, 10, 20, 50, 100, 200, 500)
+    for step in every:
+        shown = [i for i, n in enumerate(numbers) if n % step == 0]
+        if numbers[0] % step and (not shown or shown[0] > 0.6 * step):
+            shown = [0, *shown]
+        texts = [str(numbers[i]) for i in shown]
+        if rotation_that_fits(ax, places[shown], texts, size) == 0:
+            label_row(ax, places[shown], y, texts, size=size, above=1)
+            return
+
+
+def label_beside(
+    ax: Axes, places: ArrayLike, texts: Sequence[str], *, size: float = 8, upright: bool = False
+) -> list[int]:
+    """Write each text to the right of its point or, where another one or the edge is in the way, to the left.
+
+    places : shape (texts, 2), in the axes' coordinates, which need their limits
+
+    Returns the numbers of the texts that found room; the others are left out.
+    """
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    points = ax.transData.transform(np.asarray(places, dtype=float).reshape(-1, 2)) / figure.dpi * 72
+    edge = ax.get_window_extent().x1 / figure.dpi * 72
+    taken: list[tuple[float, float, float, float]] = []  # middle, width, height [pt]
+    written = []
+    for i, (x, y) in enumerate(points):
+        length, width = 0.65 * size * len(texts[i]) + 0.4 * size, 1.4 * size
+        w, h = (width, length) if upright else (length, width)
+        for side in (1, -1):
+            middle = x + side * (5 + w / 2)
+            if middle + w / 2 > edge or any(
+                abs(middle - a) < (w + b) / 2 and abs(y - c) < (h + d) / 2 for a, c, b, d in taken
+            ):
+                continue
+            taken.append((middle, y, w, h))
+            written.append(i)
+            options = {"ha": "left" if side > 0 else "right", "va": "center", "fontsize": size}
+            place = np.asarray(places, dtype=float).reshape(-1, 2)[i]
+            annotate(ax, texts[i], tuple(place), (5 * side, 0), rotation=90 if upright else 0, **options)
+            break
+    return written

@@ -11,9 +11,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from catenary_fe.layout import InputError
+from catenary_fe.layout import InputError, Line
 from catenary_fe.layout.arguments import checked, one_of, span_numbers
-from catenary_fe.results import Run
+from catenary_fe.results import Run, WireHistory
 from catenary_fe.views.style import CONTACT, new_axes, note_failed, run_title, styled
 
 Floats = NDArray[np.float64]
@@ -126,7 +126,8 @@ def plot_run_waves(
 
     quantity : "velocity", which shows waves of all sizes, or "deflection", above the static shape
     spans : numbers of the spans, from 1; unset: the evaluated ones and one on either side
-    wire : name of the wire that is shown
+    wire : name of the wire that is shown; of several tension sections "contact wire" and "messenger wire" are
+        those of all, each up to the middle of the overlap, "section 2 contact wire" is that section's alone
 
     The rays start where the leading pantograph passes a support: ahead of it to the next support, back from
     there to the pantograph, and behind it, with the wave speed of the contact wire as a string. Droppers
@@ -135,10 +136,7 @@ def plot_run_waves(
     Raises InputError where the run stored no wire shapes, or none of that wire.
     """
     one_of("quantity", quantity, get_args(Quantity))
-    history = next((w for w in run.wires() if w.name == wire), None)
-    if history is None:
-        names = ", ".join(f"'{w.name}'" for w in run.wires())
-        raise InputError(f"wire '{wire}': the run stored {names}")
+    history = joined_wire(run, wire)
     start, end, begin, stop = _window(run, spans)
     columns = (history.x >= start) & (history.x <= end)
     rows = (history.time >= begin) & (history.time <= stop)
@@ -155,6 +153,28 @@ def plot_run_waves(
         ax=ax,
     )
     return note_failed(drawn, run.failed_checks)
+
+
+def joined_wire(run: Run, wire: str) -> WireHistory:
+    """The wire of this name, or joined those of this name in all sections."""
+    wires = run.wires()
+    found = next((w for w in wires if w.name == wire), None)
+    if found is None:
+        names = ", ".join(f"'{w.name}'" for w in wires)
+        raise InputError(f"wire '{wire}': the run stored {names}")
+    parts = [found, *(w for w in wires if w.name == f"section {w.section} {wire}")]
+    if len(parts) == 1 or not isinstance(run.catenary, Line):
+        return found
+    middles = [-np.inf, *(float(np.mean(zone)) for zone in run.catenary.common_zones), np.inf]
+    shown = [(w.x > a) & (w.x <= b) for w, (a, b) in zip(parts, pairwise(middles), strict=True)]
+    each = list(zip(parts, shown, strict=True))
+    return WireHistory(
+        wire,
+        np.concatenate([w.x[own] for w, own in each]),
+        np.concatenate([w.static[own] for w, own in each]),
+        np.concatenate([w.height[:, own] for w, own in each], axis=1),
+        found.time,
+    )
 
 
 def _window(run: Run, spans: Sequence[int] | None) -> tuple[float, float, float, float]:

@@ -121,7 +121,8 @@ def test_another_run_into_a_folder_takes_away_what_was_made_of_the_one_before(ca
         (place / name).write_text("mine")
     assert call(capsys, "export", place)[0] == 0
     assert call(capsys, "report", place)[0] == 0
-    (place / "criteria.png").write_bytes(b"of the run before")
+    for name in ("criteria", "heights", "plan", "handover", "contact_lateral"):
+        (place / f"{name}.png").write_bytes(b"of the run before")
     arguments = ["--speed-kmh", "150", "--time-step-ms", "4", "--method", "linearised", "--quiet"]
     assert call(capsys, "run", line, "--pantograph", "EN 50318:2002", *arguments, "-o", place)[0] == 0
     left = {str(file.relative_to(place)) for file in place.rglob("*") if file.is_file()}

@@ -12,9 +12,10 @@ from catenary_fe.fe.contact import place
 from catenary_fe.layout import read_catenary
 from catenary_fe.results import quality
 from catenary_fe.statics.newton import static_contact
-from catenary_fe.views import plot_layout
+from catenary_fe.views import plot_layout, plot_run_waves
 from catenary_fe.views.film import scene
 from catenary_fe.views.report.tables import schedule_table
+from catenary_fe.views.waves import joined_wire
 from tests.conftest import LAYOUTS
 
 SPEED = 250 / 3.6
@@ -197,7 +198,8 @@ def test_spans_beside_an_overlap_need_not_be_equal(line: cf.Line) -> None:
 
 
 def test_tables_of_a_span_have_the_droppers_of_both_sections(shape: cf.Shape, line: cf.Line) -> None:
-    rows = schedule_table(shape, [5]).rows
+    table = schedule_table(shape)
+    rows = [row for row, spans in zip(table.rows, table.spans, strict=True) if spans == (5, 5)]
     inside = (line.dropper_positions > 240) & (line.dropper_positions < 300)
     assert len(rows) == np.count_nonzero(inside)
     assert {row[0] for row in rows} == {"1", "2"}
@@ -218,8 +220,29 @@ def test_films_hang_droppers_on_their_own_section(shape: cf.Shape, pantograph: c
     sections = np.array([wire.section for wire in seen.wires])[seen.dropper_ends]
     counts = [len(part.catenary.droppers) for part in shape.sections]
     assert np.array_equal(sections, np.repeat([[1, 1], [2, 2]], counts, axis=0))
+    shuffled = cf.Run(run.data[sorted(run.data.data_vars, reverse=True)])  # as a file may hold them
+    assert [wire.name for wire in shuffled.wires()[:2]] == ["contact wire", "section 2 contact wire"]
+    again = scene(shuffled)
+    assert np.array_equal(np.array([w.section for w in again.wires])[again.dropper_ends], sections)
     at, rest = seen.pantograph_x[0], seen.rest[0]
+    for frame, x in enumerate(at):  # a head is under a wire that is there, and pushes it up
+        heights = [seen.heights(i, frame) for i in range(len(seen.wires))]
+        assert 5.25 < seen.head_height(0, frame, heights) < 5.5, x
     assert np.all(np.abs(rest - 5.3) < 0.02), at[np.abs(rest - 5.3).argmax()]
+
+
+def test_waves_are_those_of_both_sections(shape: cf.Shape, pantograph: cf.Pantograph) -> None:
+    """Each section's wire up to the middle of the overlap, at 270 m."""
+    run = cf.simulate(shape, [pantograph], speed=SPEED, method="linearised", store_wire=0.1)
+    shown = plot_run_waves(run, quantity="deflection", spans=range(1, 10))
+    assert shown.get_xlim() == pytest.approx((0.0, 540.0), abs=5.0)
+    first, second = run.wires()[:2]
+    joined = joined_wire(run, "contact wire")
+    assert np.all(np.diff(joined.x) > 0)
+    for at, of in ((100.0, first), (250.0, first), (290.0, second), (500.0, second)):
+        own, there = np.abs(joined.x - at).argmin(), np.abs(of.x - at).argmin()
+        assert joined.height[:, own] == pytest.approx(of.height[:, there], abs=0)
+    assert np.array_equal(joined_wire(run, "section 2 contact wire").x, second.x)
 
 
 def test_an_effect_on_the_line_is_not_lost(shape: cf.Shape, pantograph: cf.Pantograph) -> None:

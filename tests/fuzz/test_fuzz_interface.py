@@ -279,6 +279,8 @@ CALLS = {
     "plot_layout: spans": (lambda g, b: views.plot_layout(g.line, spans=b), SPANS),
     "plot_layout: shape": (lambda g, b: views.plot_layout(g.line, b), OBJECT[:2]),
     "plot_static_shape": (lambda g, b: views.plot_static_shape(g.shape, spans=b), SPANS),
+    "plot_heights: spans": (lambda g, b: views.plot_heights(g.shape, spans=b), SPANS),
+    "plot_heights: speed": (lambda g, b: views.plot_heights(g.shape, speed=b), POSITIVE),
     "plot_plan: spans": (lambda g, b: views.plot_plan(g.shape, spans=b), SPANS),
     "plot_plan: width": (lambda g, b: views.plot_plan(g.shape, head_width=b), POSITIVE),
     "plot_contact_force": (lambda g, b: views.plot_contact_force(b), OBJECT),

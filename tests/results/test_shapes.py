@@ -25,11 +25,12 @@ def stored(times=TIMES, **wires):
 
 
 def test_wires_over_time():
+    """Contact wires first, the right one before the left one, whatever the order of the variables."""
     wires = stored().wires()
-    assert [w.name for w in wires] == ["left contact wire", "contact wire", "messenger wire"]
+    assert [w.name for w in wires] == ["contact wire", "left contact wire", "messenger wire"]
     assert [w.touched for w in wires] == [True, True, False]
     assert contact_wires(wires) == list(wires[:2])
-    for wire, n in zip(wires, (2, 3, 1), strict=True):
+    for wire, n in zip(wires, (3, 2, 1), strict=True):
         assert np.array_equal(wire.x, X + n)
         assert np.array_equal(wire.time, TIMES)
         assert wire.static == pytest.approx(HEIGHT + n + 1e-4 * (X - 150) ** 2)

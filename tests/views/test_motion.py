@@ -105,7 +105,7 @@ def test_curves_are_valid_json_over_one_axis(short_run):
     assert filtered == pytest.approx(expected, abs=0.2)
     assert chart["band"] == [120, 180]
     uplift = json.loads(json.dumps(uplift_chart(short_run), allow_nan=False))
-    largest = max(v for s in uplift["series"] if not s["faint"] for v in s["values"])
+    largest = max(v for s in uplift["series"] if s["shown"] for v in s["values"])
     assert largest == pytest.approx(1e3 * short_run.largest_support_uplift(), abs=0.1)
 
 

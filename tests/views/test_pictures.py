@@ -16,7 +16,16 @@ import catenary_fe as cf
 from catenary_fe import views
 from catenary_fe.results import Criterion
 from catenary_fe.results.quantities import FORCE, UPLIFT
-from catenary_fe.views.style import EVALUATED, WIRES, distinct, sequence, styled
+from catenary_fe.views.style import (
+    DROPPER,
+    EVALUATED,
+    PANTOGRAPHS,
+    SUPPORT,
+    WIRES,
+    distinct,
+    sequence,
+    styled,
+)
 
 
 @pytest.fixture(scope="module")
@@ -216,6 +225,82 @@ def test_labels_do_not_overlap(request, name):
             for i, a in enumerate(found):
                 over = [texts[j].get_text() for j in range(i) if a.overlaps(found[j])]
                 assert not over, (ax.get_title(loc="left"), texts[i].get_text(), over)
+
+
+def overlapping(ax):
+    """Pairs of texts of a picture that are written over each other."""
+    texts = [text for text in ax.texts if text.get_text()]
+    found = boxes(ax, texts)
+    return [(texts[i], texts[j]) for i, a in enumerate(found) for j in range(i) if a.overlaps(found[j])]
+
+
+@pytest.fixture(scope="module")
+def overlap_shape(curved_shape):
+    """Two sections of six spans, four of them shared."""
+    line = curved_shape.catenary
+    straight = line.replace(spans=tuple(span.replace(curve_radius=None) for span in line.spans))
+    return cf.find_form(cf.join_sections([straight, straight], [cf.Overlap(spans=4)]))
+
+
+def test_numbers_of_many_supports_are_thinned(reference):
+    """Eighty spans: numbers stay level and clear of each other, equal spans are counted."""
+    count = 80
+    line = reference.replace(
+        spans=reference.spans[:1] * count, supports=reference.supports[:1] * (count + 1), evaluated_spans=(3,)
+    )
+    whole = views.plot_layout(line)
+    assert overlapping(whole) == []
+    texts = [text.get_text() for text in whole.texts]
+    numbers = [int(text) for text in texts if text.isdigit()]
+    assert numbers == list(range(2, count + 2, 2))
+    assert f"{count} × 60 m" in texts
+
+
+def test_labels_of_an_overlap_stay_clear(overlap_shape):
+    """Two arms at a support have a force each, beside each other."""
+    pictures = [views.plot_plan(overlap_shape), views.plot_layout(overlap_shape.catenary, overlap_shape)]
+    for ax in (ax for picture in pictures for ax in picture.figure.axes):
+        assert overlapping(ax) == [], ax.get_title(loc="left")
+    close = pictures[0].figure.axes[1]
+    places = [text.xy[0] for text in close.texts if text.get_text().endswith("N")]
+    assert len(places) > len(set(places)) > 1
+
+
+def test_a_legend_names_neighbouring_sections(overlap_shape):
+    lines = {line.get_label(): line.get_color() for line in views.plot_static_shape(overlap_shape).lines}
+    first, second = (lines[f"contact wire, section {n}"] for n in (1, 2))
+    assert first != second
+    assert not {first, second} & {WIRES["messenger wire"], WIRES["stitch wire"], SUPPORT, DROPPER}
+
+
+def test_wires_droppers_supports_and_pantographs_have_colours_of_their_own():
+    """Far apart as red, green and blue go: none is mistaken for another in one picture."""
+    colours = [*WIRES.values(), DROPPER, SUPPORT, *PANTOGRAPHS[:2]]
+    channels = [np.array(mpl.colors.to_rgb(colour)) for colour in colours]
+    for i, a in enumerate(channels):
+        for b in channels[:i]:
+            assert np.linalg.norm(a - b) > 0.3, (colours[i], b)
+
+
+def test_heights_along_the_line(reference):
+    """A ramp of 50 mm in a span of 60 m: 0.83 ‰, where 2 ‰ are allowed at 200 km/h."""
+    heights = (5.3, 5.3, 5.25, 5.25, 5.25)
+    supports = [
+        support.replace(contact_wire_height=height)
+        for support, height in zip(reference.supports[:5], heights, strict=True)
+    ]
+    line = reference.replace(spans=reference.spans[:4], supports=tuple(supports), evaluated_spans=(3,))
+    ax = views.plot_heights(cf.find_form(line), speed=200 / 3.6)
+    wire = next(c for c in ax.lines if c.get_label() == "contact wire at rest")
+    assert np.interp(line.support_positions[1:4], *wire.get_data()) == pytest.approx(heights[1:4], abs=2e-3)
+    shown = [text.get_text() for text in ax.texts if "." in text.get_text()]
+    assert shown == ["5.30", "5.30", "5.25", "5.25"]  # the ends, and where the wire begins to rise or fall
+    assert overlapping(ax) == []
+    below = ax.figure.axes[0] if ax.figure.axes[1] is ax else ax.figure.axes[1]
+    steps = next(patch for patch in below.patches if patch.get_label() == "gradient of a span")
+    assert steps.get_data().values == pytest.approx([0, -0.05 / 60 * 1e3, 0, 0])
+    limits = sorted(c.get_ydata()[0] for c in below.lines if c.get_linestyle() == "--")
+    assert limits == pytest.approx([-2, 2])
 
 
 def test_the_tension_of_every_dropper_is_drawn(twin_wires_shape):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.axes import Axes
 
 from catenary_fe.layout import InputError, PowerSystem
+from catenary_fe.layout.arguments import listed
 from catenary_fe.results import Criterion, Run, checks_in_words, criteria_in_words, criteria_rows
 from catenary_fe.results.check import checks_table
 from catenary_fe.results.comparison import failed_checks, figures_table, input_differences, key_figures
@@ -24,7 +25,7 @@ from catenary_fe.results.signal import FilterKind
 from catenary_fe.statics import Shape
 from catenary_fe.views import comparison
 from catenary_fe.views.line_test import plot_line_test
-from catenary_fe.views.report import series, tables
+from catenary_fe.views.report import headline, series, tables
 from catenary_fe.views.run import plot_force_spectrum, run_pictures
 from catenary_fe.views.static import plot_elasticity
 from catenary_fe.views.style import new_axes, own_style, run_title, styled
@@ -33,7 +34,8 @@ from catenary_fe.views.waves import plot_run_waves
 if TYPE_CHECKING:
     from jinja2 import Environment, Template
 
-ASSETS = ("uPlot.min.css", "report.css", "uPlot.iife.min.js", "report.js", "uPlot.LICENSE")
+ASSETS = ("uPlot.min.css", "report.css", "uPlot.iife.min.js", "charts.js", "player.js", "report.js",
+          "uPlot.LICENSE")  # fmt: skip
 
 
 @styled
@@ -52,18 +54,19 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
     except InputError:
         motion = None
     rows: list[Criterion] = [] if run.partial else criteria_rows(run, system, filter=filter)
-    governing = tables.governing_figures(run, filter, rows)
+    governing = headline.governing_figures(run, filter, rows)
     checks = checks_in_words(run.checks)
-    spans, several = run.evaluated_spans, len(set(shape.catenary.spans)) > 1
     content: dict[str, Any] = {
         "title": run.data.attrs["title"],
         "partial": str(run.partial) if run.partial else "",
         "speed": f"{3.6 * run.speed:g}",
         "lead": _lead(run),
-        "governing": tables.why_it_governs(run, governing, rows),
+        "governing": headline.why_it_governs(run, governing, rows),
         "versions": json.loads(run.data.attrs["versions"]),
-        "keys": tables.key_figures(run, governing),
-        "criteria": tables.Table(f"Limits of {system}", *criteria_table(rows)),
+        "keys": headline.key_figures(run, filter, governing),
+        "system": system,
+        "criteria": headline.criteria_bars(rows),
+        "closest": headline.closest(rows),
         "verdict": f"{system}: {criteria_in_words(rows)}." if rows else f"Not judged. {run.partial}.",
         "bad": any(row.passed is False for row in rows),
         "checks_verdict": checks[0].upper() + checks[1:] + ".",
@@ -74,14 +77,17 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
         "by_span": tables.span_table(run, filter),
         "uplifts": tables.uplift_table(run),
         "slack": tables.slack_table(run),
-        "schedule": tables.schedule_table(shape, spans if several else spans[:1]),
-        "whole_schedule": tables.schedule_table(shape, None),
+        "spans": tables.line_spans_table(shape.catenary),
+        "schedule": tables.schedule_table(shape),
         "supports": tables.support_table(shape),
         "inputs": tables.input_tables(run),
         "pictures": _pictures(run, shape, filter, moving=motion is not None),
         "data": {
             "force": series.force_chart(run, filter),
             "uplift": series.uplift_chart(run),
+            "heights": series.heights_chart(run, shape),
+            "plan": series.plan_chart(run, shape) if shape.catenary.is_spatial else None,
+            "spans": series.line_spans(run),
             "motion": motion,
         },
         "footer": "Everything on this page was computed by catenary_fe; how far that can be trusted is in its"
@@ -92,7 +98,7 @@ def report_page(run: Run, shape: Shape, *, system: PowerSystem = "AC", filter: F
 
 def _lead(run: Run) -> str:
     names = [str(name) for name in run.data["pantograph"].values]
-    spans = ", ".join(map(str, run.evaluated_spans))
+    spans = listed(run.evaluated_spans)
     return (
         f"{' and '.join(names)} on {run.catenary.length:g} m of line, {len(run.catenary.spans)} spans, of"
         f" which {spans} are evaluated; {run.time[-1]:.2f} s simulated."

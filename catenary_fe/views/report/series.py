@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Callable, Sequence
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -10,14 +12,25 @@ from numpy.typing import NDArray
 
 from catenary_fe.results import Run
 from catenary_fe.results.signal import FilterKind
+from catenary_fe.statics import HangingWire, Shape
 from catenary_fe.views.film import MASS_GAP, Scene, scene
-from catenary_fe.views.style import pantograph_colour, sequence, wire_colour
+from catenary_fe.views.layout import head_width
+from catenary_fe.views.static import RUN_OFF, named_contact_wires
+from catenary_fe.views.style import (
+    DROPPER,
+    MESSENGER,
+    SLACK,
+    SUPPORT,
+    distinct,
+    pantograph_colour,
+    wire_colour,
+)
 
 Floats = NDArray[np.float64]
 _POINTS = 8000  # of a curve
 _MOTION = 4_000_000  # [bytes] of the player's wire shapes, before base64
 _RANGE = 32_000  # of 16-bit numbers
-_SUPPORTS = 15  # all supports' uplift up to so many, else those of the evaluated spans
+_UPLIFTS = 160_000  # numbers of all supports' uplift together
 
 
 def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
@@ -47,27 +60,96 @@ def force_chart(run: Run, filter: FilterKind) -> dict[str, Any]:
 
 def uplift_chart(run: Run) -> dict[str, Any]:
     """Uplift at the supports against time, in mm."""
-    every = _stride(run.time.size, _POINTS // 4)
+    count = run.data.sizes["support"]
+    every = _stride(run.time.size, min(_POINTS // 2, _UPLIFTS // count))
     uplift = 1e3 * run.data["support_uplift"].values[:, ::every]
     inner = range(1, uplift.shape[0] - 1)
     evaluated = [n - 1 for n in run.uplift_by_support() if n - 1 in inner]
-    shown = [i for i in inner if i in evaluated or len(inner) <= _SUPPORTS]
-    colours = dict(zip(evaluated, sequence(len(evaluated)), strict=True))
     series = [
         {
             "label": f"support {i + 1}",
-            "colour": colours.get(i, "#999999"),
-            "faint": i not in evaluated,
-            "shown": True,
-            "values": _numbers(uplift[i], 2),
+            "colour": colour,
+            "faint": False,
+            "shown": i in evaluated,
+            "spans": [i, i + 1],
+            "values": _numbers(uplift[i], 1),
         }
-        for i in shown
+        for i, colour in zip(inner, cycle(distinct(8)), strict=False)
     ]
     supports, x = run.data["support_position"].values, run.data["position"].values
     begin, end = supports[min(run.evaluated_spans) - 1], supports[max(run.evaluated_spans)]
     inside = ((x >= begin) & (x <= end)).any(axis=0)
     band = [float(t) for t in run.time[inside][[0, -1]]] if inside.any() else []
     return {"x": _numbers(run.time[::every], 4), "series": series, "lines": [], "band": band, "marks": []}
+
+
+def line_spans(run: Run) -> dict[str, Any]:
+    """What the reader can choose: the spans, and the times in which a pantograph is inside each of them."""
+    supports, x = run.data["support_position"].values, run.data["position"].values
+    passed = []
+    for begin, end in pairwise(supports.tolist()):
+        times = run.time[((x >= begin) & (x <= end)).any(axis=0)]
+        passed.append([round(float(t), 3) for t in times[[0, -1]]] if times.size else None)
+    return {"supports": _numbers(supports, 3), "evaluated": list(run.evaluated_spans), "passed": passed}
+
+
+def heights_chart(run: Run, shape: Shape) -> dict[str, Any]:
+    """Height of the contact wires at rest against the place along the line, where they are in reach."""
+    catenary = shape.catenary
+    x = np.unique(np.concatenate([wire.x for wire in shape.contact_wires]))
+    design = catenary.design_line(x)
+    series = [_of_line("design", "#777777", design, 3)]
+    for (name, colour), z in _merged(x, named_contact_wires(shape), lambda wire, at: wire.height(at)).items():
+        z[z - design > RUN_OFF] = np.nan
+        series.append(_of_line(name, colour, z, 4))
+    return _along(run, x, series)
+
+
+def plan_chart(run: Run, shape: Shape) -> dict[str, Any]:
+    """Place of contact and messenger wires across the track against the place along the line."""
+    x = np.unique(np.concatenate([wire.x for wire in shape.contact_wires]))
+    contact = named_contact_wires(shape)
+    messenger = [
+        (wire, f"messenger wire{name.removeprefix('contact wire')}", MESSENGER)
+        for wire, (_, name, _) in zip(
+            shape.wires[len(contact) : shape.mesh.first_stitch], contact, strict=False
+        )
+    ]
+    found = _merged(x, [*messenger, *contact], lambda wire, at: wire.lateral(at))
+    half = head_width(run.pantographs) / 2
+    edges = [{"value": side * half, "colour": "#9aa5b0", "dashed": True, "whole": True} for side in (-1, 1)]
+    series = [_of_line(name, colour, y, 4) for (name, colour), y in found.items()]
+    return _along(run, x, series) | {"lines": edges}
+
+
+def _merged(
+    x: Floats,
+    wires: Sequence[tuple[HangingWire, str, str]],
+    value: Callable[[HangingWire, Floats], Floats],
+) -> dict[tuple[str, str], Floats]:
+    """Values at places x [m] by name and colour; wires of one name lie behind each other along the line."""
+    found: dict[tuple[str, str], Floats] = {}
+    for wire, name, colour in wires:
+        values = found.setdefault((name, colour), np.full(x.size, np.nan))
+        own = (x >= wire.x[0]) & (x <= wire.x[-1])
+        values[own] = value(wire, x[own])
+    return found
+
+
+def _of_line(label: str, colour: str, values: Floats, digits: int) -> dict[str, Any]:
+    faint = label == "design"
+    return {
+        "label": label,
+        "colour": colour,
+        "faint": faint,
+        "shown": True,
+        "values": _numbers(values, digits),
+    }
+
+
+def _along(run: Run, x: Floats, series: list[dict[str, Any]]) -> dict[str, Any]:
+    return {"x": _numbers(x, 3), "series": series, "lines": [], "band": _evaluated(run),
+            "marks": _numbers(run.data["support_position"].values, 3)}  # fmt: skip
 
 
 def motion(run: Run) -> dict[str, Any]:
@@ -91,6 +173,7 @@ def motion(run: Run) -> dict[str, Any]:
         "supports": {
             "x": _numbers(seen.support_x, 3),
             "top": _numbers(catenary.messenger_support_heights, 3),
+            "design": _numbers(catenary.design_line(seen.support_x), 4),
         },
         "pantographs": [
             {
@@ -104,6 +187,7 @@ def motion(run: Run) -> dict[str, Any]:
             for i, name in enumerate(names)
         ],
         "mass_gap": MASS_GAP,
+        "colours": {"dropper": DROPPER, "slack": SLACK, "support": SUPPORT},
         "band": _evaluated(run),
     }
 

@@ -10,21 +10,26 @@ from typing import Any
 import numpy as np
 
 from catenary_fe.layout import AnyPantograph, Catenary, Equipment, Wire, counted, ends_in_words
+from catenary_fe.layout.arguments import listed
 from catenary_fe.layout.installed import changes_in_words
-from catenary_fe.results import Criterion, ForceStatistics, Run, excess, governing
+from catenary_fe.results import Run
 from catenary_fe.results.export import cell, common_name
-from catenary_fe.results.quantities import FORCE, UPLIFT, decimals_of, figure_rows
+from catenary_fe.results.quantities import FORCE, decimals_of, figure_rows
 from catenary_fe.results.signal import CUT_OFF, FilterKind
 from catenary_fe.statics import LineShape, Shape
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of ready texts under named columns."""
+    """Rows of ready texts under named columns.
+
+    spans : first and last span that each row is about: it is shown where one of these is; empty: always
+    """
 
     caption: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
+    spans: Sequence[tuple[int, int]] = ()
     numeric: Sequence[bool] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -36,41 +41,9 @@ def _is_number(text: str) -> bool:
     return not text or (text[-1].isdigit() and text.lstrip("+-−").replace(".", "").isdigit())
 
 
-def governing_figures(run: Run, filter: FilterKind, rows: Sequence[Criterion]) -> ForceStatistics | None:
-    """Those of the pantograph that decides on the line; None where the evaluated spans were not passed."""
-    figures = run.figures(filter)
-    name = governing(figures, excess(rows)) if run.reached else None
-    return next((s for s in figures if s and s.pantograph == name), None)
-
-
-def why_it_governs(run: Run, s: ForceStatistics | None, rows: Sequence[Criterion]) -> str:
-    """Whose the key figures are, and why, where there are several pantographs."""
-    if s is None or run.data.sizes["pantograph"] == 1:
-        return ""
-    over = excess(rows)
-    if s.pantograph in over:
-        why = "which misses a criterion" if len(over) == 1 else "which misses a criterion by most"
-    else:
-        why = f"whose σ is the largest share of its mean force, {s.std / s.mean:.2f}"
-    return f"The figures are those of the pantograph that governs: {s.pantograph}, {why}."
-
-
-def key_figures(run: Run, s: ForceStatistics | None) -> list[dict[str, str]]:
-    """The governing pantograph's figures to see at one glance, and the largest uplift."""
-    if s is None:
-        return [{"name": "evaluated spans", "value": "not passed"}]
-    uplift = UPLIFT.shown(run.largest_support_uplift())
-    return [
-        *({"name": FORCE[own].name, "value": FORCE[own].text(s)} for own in ("mean", "std")),
-        {"name": "actual minimum, maximum", "value": f"{FORCE['min'].text(s)}, {FORCE['max'].text(s)}"},
-        {"name": FORCE["long_contact_loss"].name, "value": FORCE["long_contact_loss"].text(s)},
-        {"name": UPLIFT.name, "value": f"{UPLIFT.number(uplift)} {UPLIFT.unit}"},
-    ]
-
-
 def statistics_table(run: Run, filter: FilterKind) -> Table:
     """Statistics of all pantographs over the evaluated spans."""
-    spans = ", ".join(map(str, run.evaluated_spans))
+    spans = listed(run.evaluated_spans)
     caption = f"Contact force in spans {spans}, {filter} low-pass at {CUT_OFF:g} Hz"
     names = [str(name) for name in run.data["pantograph"].values]
     columns = [s.as_dict() if s else {} for s in run.figures(filter)]
@@ -90,19 +63,20 @@ def span_table(run: Run, filter: FilterKind) -> Table:
         (str(span), *(q.number(getattr(s, own)) for s in figures for own, q in shown.items()))
         for span, figures in by_span.items()
     ]
-    return Table("Contact force span by span", ("span", *columns), cells)
+    return Table("Contact force span by span", ("span", *columns), cells, [(n, n) for n in by_span])
 
 
 def uplift_table(run: Run) -> Table:
     """Largest uplift at each support that the train passed."""
     places = run.data["support_position"].values
     evaluated = run.uplift_by_support()
+    lifts = {n: z for n, z in run.uplift_by_support(range(1, places.size)).items() if 1 < n < places.size}
     rows = [
         (str(n), f"{places[n - 1]:g}", f"{1e3 * lift:.1f}", "yes" if n in evaluated else "")
-        for n, lift in run.uplift_by_support(range(1, places.size)).items()
-        if 1 < n < places.size
+        for n, lift in lifts.items()
     ]
-    return Table("", ("support", "at (m)", "largest uplift (mm)", "of an evaluated span"), rows)
+    columns = ("support", "at (m)", "largest uplift (mm)", "of an evaluated span")
+    return Table("Largest uplift", columns, rows, [(n - 1, n) for n in lifts])
 
 
 def slack_table(run: Run) -> Table:
@@ -115,14 +89,45 @@ def slack_table(run: Run) -> Table:
         for i in run.slackened_droppers
     ]
     caption = f"{len(rows)} of {places.size} droppers went slack"
-    return Table(caption, ("span", "at (m)", "slack for (ms)", "largest force (N)"), rows)
+    columns = ("span", "at (m)", "slack for (ms)", "largest force (N)")
+    return Table(caption, columns, rows, [(int(spans[i]), int(spans[i])) for i in run.slackened_droppers])
 
 
-def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
-    """Dropper lengths of some spans, or of all; which wires they join, where there is a choice."""
-    caption = f"span{'s' if len(spans) > 1 else ''} {', '.join(map(str, spans))}" if spans else "all spans"
-    places = zip(shape.dropper_schedule(), shape.catenary.dropper_spans.tolist(), strict=True)
-    rows = [row.as_dict() for row, span in places if spans is None or span in spans]
+def line_spans_table(catenary: Catenary) -> Table:
+    """What each span is: length, contact wire heights and gradient, stagger, curve, droppers."""
+    x, z, staggers = catenary.support_positions, catenary.drawn_heights, catenary.staggers
+    rows = [
+        (
+            str(n),
+            f"{x[n - 1]:g} to {x[n]:g}",
+            f"{span.length:g}",
+            f"{z[n - 1]:.3f} to {z[n]:.3f}",
+            f"{1e3 * catenary.gradients[n - 1] + 0.0:.2f}",
+            f"{staggers[n - 1]:g} to {staggers[n]:g}",
+            _curve(span.curvatures),
+            str(len(span.droppers)),
+        )
+        for n, span in enumerate(catenary.spans, start=1)
+    ]
+    columns = ("span", "at (m)", "length (m)", "contact wire at (m)", "gradient (‰)", "stagger (m)",
+               "curve radius (m)", "droppers")  # fmt: skip
+    return Table("Spans", columns, rows, [(n, n) for n in range(1, len(rows) + 1)])
+
+
+def _curve(curvatures: tuple[float, float]) -> str:
+    """Radius and side of a span's curve, of a transition its two ends'."""
+    if not any(curvatures):
+        return "straight"
+    ends = dict.fromkeys(
+        f"{1 / abs(c):g} {'left' if c > 0 else 'right'}" if c else "straight" for c in curvatures
+    )
+    return " to ".join(ends)
+
+
+def schedule_table(shape: Shape) -> Table:
+    """Dropper lengths; which wires they join, where there is a choice."""
+    rows = [row.as_dict() for row in shape.dropper_schedule()]
+    spans = shape.catenary.dropper_spans.tolist()
     columns = {
         **({"section": "section"} if isinstance(shape, LineShape) else {}),
         "span": "span", "dropper": "dropper", "chainage_m": "chainage (m)",
@@ -131,20 +136,26 @@ def schedule_table(shape: Shape, spans: Sequence[int] | None) -> Table:
     }  # fmt: skip
     wires = {"hangs_on": "hangs on", "contact_wire": "holds contact wire"}
     columns |= {key: name for key, name in wires.items() if len({row.get(key) for row in rows}) > 1}
-    return Table(f"Dropper schedule, {caption}", tuple(columns.values()), _cells(rows, columns))
+    own = [(span, span) for span in spans]
+    return Table("Dropper schedule", tuple(columns.values()), _cells(rows, columns), own)
 
 
 def support_table(shape: Shape) -> Table:
     """Where the wires are at each support, and what it and its steady arm hold."""
     columns = {
+        **({"section": "section"} if isinstance(shape, LineShape) else {}),
         "support": "support", "chainage_m": "chainage (m)", "stagger_m": "stagger (m)",
         "contact_wire_height_m": "contact wire at (m)", "system_height_m": "system height (m)",
         "arm_vertical_N": "arm, up (N)", "arm_lateral_N": "arm, left (N)",
         "messenger_vertical_N": "messenger wire, up (N)", "messenger_lateral_N": "messenger wire, left (N)",
         "messenger_wire_tension_kN": "its tension (kN)",
     }  # fmt: skip
-    cells = _cells([row.as_dict() for row in shape.support_schedule()], columns)
-    return Table("Supports; of two contact wires the right one first", tuple(columns.values()), cells)
+    schedule = shape.support_schedule()
+    cells = _cells([row.as_dict() for row in schedule], columns)
+    at, count = shape.catenary.support_positions, len(shape.catenary.spans)
+    before = [int(np.abs(at - row.chainage_m).argmin()) for row in schedule]  # supports, from 0
+    spans = [(max(1, i), min(i + 1, count)) for i in before]
+    return Table("Supports; of two contact wires the right one first", tuple(columns.values()), cells, spans)
 
 
 def _cells(rows: Sequence[Mapping[str, Any]], keys: Iterable[str]) -> list[list[str]]:
