@@ -186,6 +186,8 @@ class Conformity:
         ]
         for run in self.runs:
             said = f"did not run: {run.error}" if run.error else criteria_in_words(run.criteria)
+            if failed := run.summary.get("checks_failed"):
+                said += f"; checks of the run failed: {', '.join(failed)}"
             passed = not run.error and not run.missed
             rows.append(_verdict(run.title, said, passed, f"runs/{run.name}/summary.json"))
         said = "the same verdicts" if self.verdict_stays else "verdicts differ, or a run failed"

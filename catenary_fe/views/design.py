@@ -60,5 +60,6 @@ def plot_design(found: Any) -> Axes:
     if len(problem.names) <= 8:
         style.headroom(lower, 0.1 + 0.09 * ((len(problem.names) + 1) // 2))
         style.legend(lower, 2)
+    lower.xaxis.get_major_locator().set_params(integer=True)
     style.finish(lower, "evaluation", "place between the bounds", "variables")
     return upper
