@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from catenary_fe.layout.variation import unit_of
 from catenary_fe.views import style
@@ -60,6 +61,6 @@ def plot_design(found: Any) -> Axes:
     if len(problem.names) <= 8:
         style.headroom(lower, 0.1 + 0.09 * ((len(problem.names) + 1) // 2))
         style.legend(lower, 2)
-    lower.xaxis.get_major_locator().set_params(integer=True)
+    lower.xaxis.set_major_locator(MaxNLocator(integer=True))
     style.finish(lower, "evaluation", "place between the bounds", "variables")
     return upper

@@ -1,7 +1,7 @@
 """What does exactness cost? Error of σ, extremes and uplift against processor time.
 
-Question: which element lengths, time step and engine give σ within 1 % of a converged computation at the least
-cost, on a plane line, a spatial one and one with stitch wires? Are the defaults among them?
+Question: which element lengths, time step and engine give σ within 1 % of a converged computation at the
+least cost, on a plane line, a spatial one and one with stitch wires? Are the defaults among them?
 
 Run it with ``python models/studies/cost_and_error.py [FOLDER]``; it takes half an hour on one core and writes
 ``cost_and_error.md``, ``.json`` and ``.png``. Times compare within the study only.
@@ -51,12 +51,13 @@ CASES = [
 FIGURES = {"std_N": "σ", "max_N": "maximum", "min_N": "minimum", "max_support_uplift_mm": "uplift"}
 HEADING = """# Cost against error
 
-Written by `models/studies/cost_and_error.py`: linearised runs of all meshes and steps, and some nonlinear ones,
-against a linearised run with elements of 0.12 m at clamps, at most 0.4 m (contact wire) and 0.6 m (messenger wire),
-in steps of 0.25 ms. Errors of the extremes are in per cent of the converged mean force, which no small denominator
-blows up. A mesh is named by its largest elements of contact and messenger wire and those at clamps. Cost: processor
-time of form finding, set-up, run and statistics, in units of the default's linearised one; compare it within the
-table only. What nothing beats in both is bold.
+Written by `models/studies/cost_and_error.py`: linearised runs of all meshes and steps, and some
+nonlinear ones, against a linearised run with elements of 0.12 m at clamps, at most 0.4 m (contact wire)
+and 0.6 m (messenger wire), in steps of 0.25 ms. Errors of the extremes are in per cent of the converged
+mean force, which no small denominator blows up. A mesh is named by its largest elements of contact and
+messenger wire and those at clamps. Cost: processor time of form finding, set-up, run and statistics, in
+units of the default's linearised one; compare it within the table only. What nothing beats in both is
+bold.
 
 ![Error of σ against cost](cost_and_error.png)
 """
