@@ -323,11 +323,11 @@ class WireSubstructures:
         check_arms(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))
         balance = np.zeros(2 * self.axes * n)
-        installation = balanced(
+        installation, system = balanced(
             self.catenary, mesh, Installation(lines, lengths, arm_forces, support_forces, balance)
         )
         span = self.spread()
-        return Shape(
+        shape = Shape(
             catenary=self.catenary,
             mesh_settings=self.settings,
             mesh=mesh,
@@ -336,6 +336,8 @@ class WireSubstructures:
             dropper_forces=self.tensions(lengths, span),
             installed_lengths=np.linalg.norm(span, axis=1),
         )
+        shape.__dict__["system"] = system  # it is assembled already
+        return shape
 
     def _with_springs(self, reactions: Floats) -> Floats:
         """[N], shape (axes - 1, 2 * nodes): reactions, and forces of what was set before."""
