@@ -168,8 +168,10 @@ def _parts(length: Floats, values: Floats) -> Floats:
 
 def _dot(u: Floats, v: Floats) -> Floats:
     """Shape (points, 1, elements), of vectors of shape (points, axes, elements)."""
-    product: Floats = sum(u[:, k : k + 1] * v[:, k : k + 1] for k in range(1, u.shape[1]))
-    return u[:, :1] * v[:, :1] + product
+    product: Floats = u[:, :1] * v[:, :1]
+    for k in range(1, u.shape[1]):
+        product += u[:, k : k + 1] * v[:, k : k + 1]
+    return product
 
 
 def _axial(cables: Cables, r: Floats, definite: bool) -> Floats:
