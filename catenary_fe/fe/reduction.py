@@ -138,9 +138,9 @@ def linear_model(system: System) -> LinearModel:
     span = droppers.span(system.reference)
     pull, push = droppers.tension(span), droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
     D = system.alpha * M + system.beta * K + rows.T @ _diagonal(droppers.damping) @ rows
-    D = D + own.T @ (_diagonal(system.ground_damping) + system.linear_damping) @ own
-    K = K + own.T @ system.spring_stiffness() @ own
-    M = M + own.T @ (system.mass - system.wire_mass) @ own
+    D = D + _moved(_diagonal(system.ground_damping) + system.linear_damping, place, size)
+    K = K + _moved(system.spring_stiffness(), place, size)
+    M = M + _moved(system.mass - system.wire_mass, place, size)
     M, K, D = (matrix.tocsr() for matrix in (M, K, D))
     for matrix in (M, K, D):
         matrix.eliminate_zeros()
@@ -352,6 +352,16 @@ def _tension_stations(wire: _ReducedWire, held: NDArray[np.bool_]) -> Floats:
     at = np.flatnonzero(held[[wire.gap_ends[0, 0], *wire.gap_ends[:, 1]]])
     first = int(at[0]) if at.size else 0  # of stitch wires, the messenger wire holds both ends
     return np.where(np.arange(wire.tension.size) < first, wire.gap_x[:-1], wire.gap_x[1:])
+
+
+def _moved(matrix: Any, place: Integers, size: int) -> Any:
+    """A matrix over all coordinates as one over those that are kept, sparse."""
+    from scipy.sparse import csr_matrix
+
+    entries = matrix.tocoo()
+    rows, columns = place[entries.row], place[entries.col]
+    kept = (rows >= 0) & (columns >= 0) & (entries.data != 0)
+    return csr_matrix((entries.data[kept], (rows[kept], columns[kept])), shape=(size, size))
 
 
 def _diagonal(values: Floats) -> Any:

@@ -163,10 +163,17 @@ class TautWires:
         """Shape (2 * nodes,): unknowns that no element has."""
         return np.asarray(self.stiffness.diagonal() == 0)
 
+    @cached_property
+    def order(self) -> Integers:
+        """Shape (2 * nodes,): numbers of the unknowns along the track, in which matrices are narrow."""
+        return np.argsort(np.tile(self.x, 2), kind="stable")
+
     def problem(self, held: Mapping[int, float], springs: Any = None) -> TautProblem:
         """The wires held at some displacements [m] by their number, with springs in a sparse matrix [N/m]."""
         K = self.stiffness if springs is None else (self.stiffness + springs).tocsr()
-        return TautProblem(K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle)
+        return TautProblem(
+            K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle, self.order
+        )
 
     def slopes(self, found: Floats, per_length: Floats) -> Floats:
         """Shape (nodes,): slopes under a load [N/m]; where a string kinks, the mean of both sides.
@@ -189,15 +196,19 @@ class TautProblem:
     reactions of a solution are the forces that hold what is held.
     """
 
-    def __init__(self, stiffness: Any, held: Integers, values: Floats, idle: NDArray[np.bool_]) -> None:
+    def __init__(
+        self, stiffness: Any, held: Integers, values: Floats, idle: NDArray[np.bool_], order: Integers
+    ) -> None:
         from scipy.sparse.linalg import splu
 
         self._stiffness, self._held, self._values = stiffness, held, values
         free = ~idle
         free[held] = False
-        self._free = np.flatnonzero(free)
+        self._free = order[free[order]]
         inner = stiffness[self._free][:, self._free].tocsc()
-        self._factor = splu(inner, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        self._factor = splu(
+            inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
 
     def solve(self, force: Floats) -> tuple[Floats, Floats]:
         """Displacements and slopes, and reactions [N], under forces [N]; all of shape (2 * nodes,)."""
