@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.assembly import balanced
 from catenary_fe.fe.cable import scattered
 from catenary_fe.fe.equipment import lumped
-from catenary_fe.fe.installation import Installation, curve_pulls, point_masses
+from catenary_fe.fe.installation import Installation, point_masses
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.track import cant_forces, leaning_weights
@@ -78,7 +78,7 @@ class WireSubstructures:
         wires = self.wires
         rise = self.found[:, wires.dof[wires.left + 1]] - self.found[:, wires.dof[wires.left]]
         arc = np.sqrt(1 + ((rise / wires.length) ** 2).sum(axis=0))
-        stretch = 1 + (arc * wires.tension - wires.of_wire("tension")) / wires.of_wire("axial_stiffness")
+        stretch = 1 + (arc * wires.tension - wires.nominal_tension) / wires.axial_stiffness
         ratio: Floats = arc / stretch
         return ratio
 
@@ -87,7 +87,7 @@ class WireSubstructures:
         weight = self.wires.weight * self._length_ratio()
         loads = -GRAVITY * weight[None]
         if self.axes == 3:
-            loads = np.stack([np.concatenate(curve_pulls(self.catenary, self.mesh)) * weight, loads[0]])
+            loads = np.stack([self.wires.curve_pulls * weight, loads[0]])
         return loads
 
     def _arms(self) -> list[tuple[int, int, int, SteadyArm]]:

@@ -136,6 +136,21 @@ class TautWires:
         return self.of_wire("mass_per_length")
 
     @cached_property
+    def axial_stiffness(self) -> Floats:
+        """[N], shape (elements,)."""
+        return self.of_wire("axial_stiffness")
+
+    @cached_property
+    def nominal_tension(self) -> Floats:
+        """[N], shape (elements,), along the wires."""
+        return self.of_wire("tension")
+
+    @cached_property
+    def curve_pulls(self) -> Floats:
+        """[N/kg], shape (elements,), to the left, by the elements' masses."""
+        return np.concatenate(curve_pulls(self.catenary, self.mesh))
+
+    @cached_property
     def bending_stiffness(self) -> Floats:
         """[N m²], shape (elements,)."""
         return self.of_wire("bending_stiffness")
@@ -259,11 +274,11 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
     axes, left = points.shape[1], wires.left
     slopes = np.concatenate([line.slopes for line in lines])
     lengths = np.concatenate([line.lengths for line in lines])
-    EA, T = wires.of_wire("axial_stiffness"), wires.of_wire("tension")
+    EA, T = wires.axial_stiffness, wires.nominal_tension
     pull = np.zeros((left.size, axes))  # [N/kg]
     pull[:, -1] = -GRAVITY
     if axes == 3:
-        pull[:, 1] = np.concatenate(curve_pulls(wires.catenary, wires.mesh))
+        pull[:, 1] = wires.curve_pulls
     index = (left[:, None] * axes + np.arange(2 * axes)).astype(np.int64)
     of_slopes = np.concatenate([axes + np.arange(axes), 3 * axes + np.arange(axes)])
 

@@ -11,8 +11,8 @@ from catenary_fe.engines.compiled import compiled, kept, vectorising
 from catenary_fe.engines.linearised.arrays import ComplianceColumns
 
 NEGLIGIBLE = 1e-6  # of a column's largest entry
-_WINDOW = 640  # rows that are looked at around a column's middle, at first
-_EDGE = 32  # part of the window, at either end, where a column must have become negligible
+_FEW = 2 * SLOTS  # columns that tell how wide all are
+_EDGE = 64  # part of the window, at either end, where a column must have become negligible
 
 
 def compliance_columns(factor: Any, right: Any, starts: Integers) -> ComplianceColumns:
@@ -31,7 +31,13 @@ def compliance_columns(factor: Any, right: Any, starts: Integers) -> ComplianceC
     order = np.argsort(middle, kind="stable")
     lower, inverse = factor.L, 1 / factor.U.diagonal()
     triangle, sides = ((A.indptr, A.indices, A.data) for A in (lower, right))
-    window = _WINDOW
+    few = order[:: -(-count // _FEW)]
+    part = right[:, few]
+    first_few = (part.indptr, part.indices, part.data), np.arange(few.size), middle[few] - size
+    with vectorising():
+        _, begin, end = _windows(triangle, inverse, *first_few, 2 * size)
+    reach = max(int((size - begin).max()), int((end - size).max()))
+    window = int(2.4 * reach) + _EDGE
     while True:
         low = middle - window // 2
         with vectorising():
@@ -39,7 +45,7 @@ def compliance_columns(factor: Any, right: Any, starts: Integers) -> ComplianceC
         edge = window // _EDGE
         if window > 2 * size or (begin.min() >= edge and end.max() <= window - edge):
             break
-        window *= 2
+        window *= 2  # others are wider
     width = int((end - begin).max())
     # all are as wide as the widest: the room to spare, to both sides
     section = np.searchsorted(starts, middle, side="right")
