@@ -213,7 +213,7 @@ def _stations(fixed: Floats, settings: MeshSettings, largest: float) -> Floats:
     return _between(tuple(fixed.tolist()), min(settings.at_clamps, largest), settings.growth, largest)
 
 
-@lru_cache(maxsize=64)  # neighbouring designs have the same ones
+@lru_cache(maxsize=32)  # neighbouring designs have the same ones
 def _between(fixed: tuple[float, ...], first: float, growth: float, largest: float) -> Floats:
     parts = [a + _graded(b - a, first, growth, largest) for a, b in pairwise(fixed)]
     stations = np.append(np.concatenate(parts), fixed[-1])
