@@ -247,8 +247,7 @@ class System:
         axis : 0 along the track, -1 up, 1 in space to the left
         """
         row = np.zeros(self.dof.size)
-        index, weights = self.weights(wire, x, axis)
-        row[index] = weights
+        np.put(row, *self.weights(wire, x, axis))
         return row
 
     def weights(self, wire: int, x: float, axis: int = -1) -> tuple[Integers, Floats]:
@@ -324,8 +323,7 @@ class System:
         """
         total = self.reference + moved
         parts = [self._wire_part(total), *self._spring_parts(total, taut)]
-        linear = self.transformation.T @ self.linear_stiffness @ self.transformation
-        return scattered(parts, self.size, self.dof) + linear
+        return scattered(parts, self.size, self.dof) + self.free(self.linear_stiffness)
 
     def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
         index = self.elements()
