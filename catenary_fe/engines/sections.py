@@ -69,12 +69,13 @@ class Rows:
 
     def matrix(self, matrix: Any, idle: float = 0.0) -> Any:
         """A matrix over the coordinates, sparse, with this on the diagonal of idle ones."""
-        from scipy.sparse import diags
+        from scipy.sparse import csr_matrix
 
-        T = self._selection
-        diagonal = np.full(self.size, idle)
-        diagonal[self.place] = 0.0
-        return (T @ matrix @ T.T + diags(diagonal)).tocsr()
+        entries = matrix.tocoo()
+        empty = np.setdiff1d(np.arange(self.size), self.place) if idle else self.place[:0]
+        values = np.append(entries.data, np.full(empty.size, idle))
+        at = [np.append(self.place[index], empty) for index in (entries.row, entries.col)]
+        return csr_matrix((values, at), shape=(self.size, self.size))
 
 
 def sections_met(

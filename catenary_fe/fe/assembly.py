@@ -125,8 +125,11 @@ def _worn(catenary: Catenary, number: int, wire: Wire, x: Floats) -> EvenCurve |
     return EvenCurve.through(places, worn_surface(catenary, number, outer_diameter(wire), places))
 
 
-def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Installation:
-    """The installation with the forces that keep its wires exactly where their lines are."""
+def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> tuple[Installation, System]:
+    """The installation with the forces that keep its wires exactly where their lines are, and its system.
+
+    installation : without such forces
+    """
     none = np.zeros_like(installation.balance)
     system = assemble(catenary, mesh, replace(installation, balance=none))
     residual = system.gather(system.out_of_balance(none))
@@ -135,7 +138,7 @@ def balanced(catenary: Catenary, mesh: Mesh, installation: Installation) -> Inst
     _, one_each = np.unique(system.dof[moves], return_index=True)
     at = moves[one_each]  # of coordinates that follow another one, the leading one
     balance[at] = -residual[system.dof[at]]
-    return replace(installation, balance=balance)
+    return replace(installation, balance=balance), replace(system, force=system.force + balance)
 
 
 def _droppers(catenary: Catenary, mesh: Mesh, installation: Installation) -> Springs:

@@ -19,6 +19,32 @@ _AXIAL = np.polynomial.legendre.leggauss(4)
 _BENDING = np.polynomial.legendre.leggauss(2)
 
 
+def _of_parts(points: Floats) -> tuple[Floats, Floats]:
+    """Weights, shape (points, 3), of an element's chord and slopes in r', and in r'' times its length."""
+    xi = (points + 1) / 2
+    slopes = np.stack([6 * xi - 6 * xi**2, 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi], axis=1)
+    return slopes, np.stack([6 - 12 * xi, 6 * xi - 4, 6 * xi - 2], axis=1)
+
+
+_AXIAL_SLOPES, _ = _of_parts(_AXIAL[0])
+_BENDING_SLOPES, _BENDS = _of_parts(_BENDING[0])
+_AXIAL_SHARES, _BENDING_SHARES = _AXIAL[1] / 2, _BENDING[1] / 2
+
+
+_PAIRS = np.concatenate(  # shape (points, 9): what each second derivative adds to those by two parts
+    [
+        np.einsum("g,gp,gq->gpq", shares, left, right).reshape(-1, 9)
+        for shares, left, right in (
+            (_AXIAL_SHARES, _AXIAL_SLOPES, _AXIAL_SLOPES),
+            (_BENDING_SHARES, _BENDING_SLOPES, _BENDING_SLOPES),
+            (_BENDING_SHARES, _BENDS, _BENDS),
+            (_BENDING_SHARES, _BENDING_SLOPES, _BENDS),
+            (_BENDING_SHARES, _BENDS, _BENDING_SLOPES),
+        )
+    ]
+)
+
+
 @dataclass(frozen=True)
 class Cables:
     """Cable elements, each array of shape (elements,).
@@ -39,29 +65,21 @@ def inner_forces(cables: Cables, values: Floats) -> Floats:
 
     values : shape (elements, 4, axes), position and slope of the first node, then of the second
     """
-    L = cables.length[:, None]
-    chord, first, last = (values[:, 2] - values[:, 0]) / L, values[:, 1], values[:, 3]
-    on_chord, on_first, on_last = (np.zeros_like(chord) for _ in range(3))
-    for xi, share in zip((_AXIAL[0] + 1) / 2, _AXIAL[1] / 2, strict=True):
-        c, f, m = 6 * xi - 6 * xi**2, 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi
-        r = c * chord + f * first + m * last
-        tension = 1 - (1 + cables.rest_strain) / np.sqrt(np.einsum("ek,ek->e", r, r))
-        pull = (share * cables.axial_stiffness * cables.length * tension)[:, None] * r
-        on_chord += c * pull
-        on_first += f * pull
-        on_last += m * pull
-    for xi, share in zip((_BENDING[0] + 1) / 2, _BENDING[1] / 2, strict=True):
-        c, f, m = 6 * xi - 6 * xi**2, 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi
-        cc, ff, mm = (w / L for w in (6 - 12 * xi, 6 * xi - 4, 6 * xi - 2))
-        r, bend = c * chord + f * first + m * last, cc * chord + ff * first + mm * last
-        g, bb, ab = (np.einsum("ek,ek->e", u, v)[:, None] for u, v in ((r, r), (bend, bend), (r, bend)))
-        scale = share * cables.bending_stiffness[:, None] * L / g**2
-        by_a = scale * ((2 * ab**2 / g - bb) * r - ab * bend)
-        by_b = scale * (g * bend - ab * r)
-        on_chord += c * by_a + cc * by_b
-        on_first += f * by_a + ff * by_b
-        on_last += m * by_a + mm * by_b
-    return np.stack([-on_chord / L, on_first, on_chord / L, on_last], axis=1)
+    L = cables.length
+    parts = _parts(L, values)
+    r = np.einsum("gp,pke->gke", _AXIAL_SLOPES, parts)
+    stretched = 1 - (1 + cables.rest_strain) / np.sqrt(_dot(r, r))
+    pull = _AXIAL_SHARES[:, None, None] * (cables.axial_stiffness * L) * stretched * r
+    r, bend = (np.einsum("gp,pke->gke", weights, parts) for weights in (_BENDING_SLOPES, _BENDS))
+    bend /= L
+    g, bb, ab = _dot(r, r), _dot(bend, bend), _dot(r, bend)
+    scale = _BENDING_SHARES[:, None, None] * (cables.bending_stiffness * L) / g**2
+    by_a = scale * ((2 * ab**2 / g - bb) * r - ab * bend)
+    by_b = scale / L * (g * bend - ab * r)
+    on_points = ((_AXIAL_SLOPES, pull), (_BENDING_SLOPES, by_a), (_BENDS, by_b))
+    chord, first, last = sum(np.einsum("gp,gke->pek", weights, part) for weights, part in on_points)
+    chord = chord / L[:, None]
+    return np.stack([-chord, first, chord, last], axis=1)
 
 
 def tangent_blocks(cables: Cables, values: Floats, *, definite: bool = False) -> Floats:
@@ -70,18 +88,20 @@ def tangent_blocks(cables: Cables, values: Floats, *, definite: bool = False) ->
     values : shape (elements, 4, axes), position and slope of the first node, then of the second
     definite : where an element is slack, it resists turning as if under half its tension without strain
     """
-    count, _, axes = values.shape
-    total = np.zeros((count, 4, axes, 4, axes))
-    for xi, share in zip(*_AXIAL, strict=True):
-        a, _ = _weights((xi + 1) / 2, cables.length)
-        total += share / 2 * _spread(a, _axial(cables, np.einsum("ei,eik->ek", a, values), definite), a)
-    for xi, share in zip(*_BENDING, strict=True):
-        a, b = _weights((xi + 1) / 2, cables.length)
-        r, bend = (np.einsum("ei,eik->ek", w, values) for w in (a, b))
-        both, cross = _bending(cables, r, bend)
-        mixed = _spread(a, cross, b)
-        total += share / 2 * (_spread(a, both[0], a) + _spread(b, both[1], b))
-        total += share / 2 * (mixed + np.transpose(mixed, (0, 3, 4, 1, 2)))
+    (count, _, axes), L = values.shape, cables.length
+    parts = _parts(L, values)
+    axial = _axial(cables, np.einsum("gp,pke->gke", _AXIAL_SLOPES, parts), definite)
+    r, bend = (np.einsum("gp,pke->gke", weights, parts) for weights in (_BENDING_SLOPES, _BENDS))
+    (by_a, by_b), mixed = _bending(cables, r, bend / L)
+    mixed = mixed / L
+    points = np.concatenate([axial, by_a, by_b / L**2, mixed, np.swapaxes(mixed, 1, 2)])
+    of_parts = np.einsum("gp,gx->px", _PAIRS, points.reshape(len(points), -1))
+    of_parts = of_parts.reshape(3, 3, axes, axes, count).transpose(0, 1, 4, 2, 3)
+    total = np.empty((count, 4, axes, 4, axes))
+    of_vector = ((0, -1 / L), (1, np.ones_like(L)), (0, 1 / L), (2, np.ones_like(L)))  # part and its factor
+    for i, (p, by_p) in enumerate(of_vector):
+        for j, (q, by_q) in enumerate(of_vector):
+            total[:, i, :, j] = of_parts[p, q] * (by_p * by_q)[:, None, None]
     return total.reshape(count, 4 * axes, 4 * axes)
 
 
@@ -140,38 +160,51 @@ def _weights(xi: float, L: Floats) -> tuple[Floats, Floats]:
     return np.stack(first, axis=1), np.stack(second, axis=1)
 
 
+def _parts(length: Floats, values: Floats) -> Floats:
+    """Shape (3, axes, elements): chord by length, slopes at both nodes."""
+    v = values.transpose(1, 2, 0)
+    return np.stack([(v[2] - v[0]) / length, v[1], v[3]])
+
+
+def _dot(u: Floats, v: Floats) -> Floats:
+    """Shape (points, 1, elements), of vectors of shape (points, axes, elements)."""
+    product: Floats = u[:, :1] * v[:, :1]
+    for k in range(1, u.shape[1]):
+        product += u[:, k : k + 1] * v[:, k : k + 1]
+    return product
+
+
 def _axial(cables: Cables, r: Floats, definite: bool) -> Floats:
-    """Second derivative of ½ EA (ε - ε₀)² L by r'."""
-    length = np.linalg.norm(r, axis=1)
-    t = r / length[:, None]
-    along = t[:, :, None] * t[:, None, :]
+    """Second derivative of ½ EA (ε - ε₀)² L by r', shape (points, axes, axes, elements).
+
+    r : shape (points, axes, elements)
+    """
+    length = np.sqrt(_dot(r, r))
+    t = r / length
+    along = t[:, :, None] * t[:, None]
     tension = 1 - (1 + cables.rest_strain) / length
     if definite:
         tension = np.maximum(tension, -cables.rest_strain / 2)
-    turning = tension[:, None, None] * (np.eye(r.shape[1]) - along)
-    found: Floats = (cables.axial_stiffness * cables.length)[:, None, None] * (along + turning)
+    turning = tension[:, None] * (np.eye(r.shape[1])[:, :, None] - along)
+    found: Floats = cables.axial_stiffness * cables.length * (along + turning)
     return found
 
 
 def _bending(cables: Cables, a: Floats, b: Floats) -> tuple[tuple[Floats, Floats], Floats]:
-    """Second derivatives of ½ EI φ / g² L with φ = g b·b - (a·b)², g = a·a: by a and b twice, and by both."""
-    identity = np.eye(a.shape[1])
-    g, bb, ab = ((u * v).sum(axis=1)[:, None, None] for u, v in ((a, a), (b, b), (a, b)))
+    """Second derivatives of ½ EI φ / g² L with φ = g b·b - (a·b)², g = a·a: by a and b twice, and by both.
+
+    a, b : shape (points, axes, elements)
+    """
+    identity = np.eye(a.shape[1])[:, :, None]
+    g, bb, ab = (_dot(u, v)[:, None] for u, v in ((a, a), (b, b), (a, b)))
     phi = g * bb - ab**2
-    aa, ba, b2 = (u[:, :, None] * v[:, None, :] for u, v in ((a, a), (b, a), (b, b)))
-    abt = np.transpose(ba, (0, 2, 1))
-    scale = (cables.bending_stiffness * cables.length)[:, None, None] / g**2
+    aa, ba, abt, b2 = (u[:, :, None] * v[:, None] for u, v in ((a, a), (b, a), (a, b), (b, b)))
+    scale = cables.bending_stiffness * cables.length / g**2
     # φ_a = 2 bb a - 2 ab b, φ_b = 2 g b - 2 ab a, g_a = 2 a
     by_a = (bb - 2 * phi / g) * identity - b2 - 4 / g * (2 * bb * aa - ab * (ba + abt)) + 12 * phi / g**2 * aa
     by_b = g * identity - aa
     mixed = 2 * abt - ba - ab * identity - 4 * (g * abt - ab * aa) / g
     return (scale * by_a, scale * by_b), scale * mixed
-
-
-def _spread(left: Floats, middle: Floats, right: Floats) -> Floats:
-    """Shape (elements, 4, axes, 4, axes)."""
-    found: Floats = left[:, :, None, None, None] * middle[:, None, :, None, :] * right[:, None, None, :, None]
-    return found
 
 
 def hermite(xi: ArrayLike, length: ArrayLike) -> Floats:

@@ -29,16 +29,12 @@ def part_between(system: System, x: Floats, begin: float, end: float) -> System:
     )
 
 
-def elements_across(system: System, x: Floats, cut: float) -> System:
-    """The same coordinates with the elements alone that begin before a cut [m] and end behind it."""
-    none = np.zeros(x.size, dtype=bool)
-    return replace(
-        only(system, (x[system.first] <= cut) & (x[_last(system)] > cut)),
-        droppers=system.droppers.only(none[system.droppers.first]),
-        arms=system.arms.only(none[system.arms.first]),
-        ground_stiffness=np.zeros(x.size),
-        linear_stiffness=0 * system.linear_stiffness,
-    )
+def elements_across(system: System, x: Floats, cut: float) -> Integers:
+    """Numbers of the elements that begin before a cut [m] and end behind it.
+
+    x : [m], shape (all,), stations of the coordinates
+    """
+    return np.flatnonzero((x[system.first] <= cut) & (x[_last(system)] > cut))
 
 
 def section_part(system: System, section: int) -> System:
@@ -57,8 +53,8 @@ def section_part(system: System, section: int) -> System:
     )
 
 
-def only(system: System, kept: NDArray[np.bool_]) -> System:
-    """The same coordinates with some of the elements, shape (elements,)."""
+def only(system: System, kept: NDArray[np.bool_] | Integers) -> System:
+    """The same coordinates with some of the elements: their numbers, or shape (elements,) whether."""
     cables = Cables(*(values[kept] for values in vars(system.cables).values()))
     return replace(
         system,

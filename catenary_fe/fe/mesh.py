@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -189,8 +189,10 @@ def _clamped(catenary: Catenary) -> tuple[Floats, Floats, Integers, NDArray[np.b
 
 
 def _clamps(lines: list[WireMesh], wires: Integers, at: Floats) -> Clamps:
-    node = [int(np.searchsorted(lines[w].x, x - _ROUNDING)) for w, x in zip(wires, at, strict=True)]
-    return Clamps(wires, np.array(node, dtype=np.int64))
+    node = np.zeros(at.size, dtype=np.int64)
+    for wire in np.unique(wires).tolist():
+        node[wires == wire] = np.searchsorted(lines[wire].x, at[wires == wire] - _ROUNDING)
+    return Clamps(wires, node)
 
 
 def _line_mesh(catenary: Catenary, clamps: Floats, settings: MeshSettings, largest: float) -> WireMesh:
@@ -208,11 +210,15 @@ def _stations(fixed: Floats, settings: MeshSettings, largest: float) -> Floats:
     """Nodes on the fixed stations and, graded, between them."""
     fixed = np.unique(fixed)
     fixed = fixed[np.concatenate([[True], np.diff(fixed) > _ROUNDING])]
-    parts = [
-        a + _graded(b - a, min(settings.at_clamps, largest), settings.growth, largest)
-        for a, b in pairwise(fixed)
-    ]
-    return np.append(np.concatenate(parts), fixed[-1])
+    return _between(tuple(fixed.tolist()), min(settings.at_clamps, largest), settings.growth, largest)
+
+
+@lru_cache(maxsize=32)  # neighbouring designs have the same ones
+def _between(fixed: tuple[float, ...], first: float, growth: float, largest: float) -> Floats:
+    parts = [a + _graded(b - a, first, growth, largest) for a, b in pairwise(fixed)]
+    stations = np.append(np.concatenate(parts), fixed[-1])
+    stations.setflags(write=False)
+    return stations
 
 
 def _graded(length: float, first: float, growth: float, largest: float) -> Floats:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.cable import tangent_blocks
+from catenary_fe.fe.cable import scattered, tangent_blocks
 from catenary_fe.fe.contact import ContactPath
 from catenary_fe.fe.spring import FIXED
 from catenary_fe.fe.system import System
@@ -130,23 +130,26 @@ class LinearModel:
 def linear_model(system: System) -> LinearModel:
     """The line linearised where it was installed."""
     wires = _reduced_wires(system)
-    whole, gaps = system.dof.size, sum(wire.gap_stiffness.size for wire in wires)
-    M, K = _assemble(wires, whole)
-    droppers = system.droppers
+    whole = system.dof.size
+    T, place, starts = _kept(system, wires)
+    own, size = T[:whole], T.shape[1]
+    M, K = _wire_matrices(wires, place, whole, size)
+    droppers, rows = system.droppers, (system.elongations() @ own).tocsr()
     span = droppers.span(system.reference)
     pull, push = droppers.tension(span), droppers.stiffness * (np.linalg.norm(span, axis=1) - droppers.length)
-    D = system.alpha * M + system.beta * K
-    D = D + _padded(system.taut_damping() + _diagonal(system.ground_damping) + system.linear_damping, gaps)
-    K = K + _padded(system.spring_stiffness(), gaps)
-    M = M + _padded(system.mass - system.wire_mass, gaps)
-    T, place, starts = _kept(system, wires, gaps)
-    M, K, D = ((T.T @ matrix @ T).tocsr() for matrix in (M, K, D))
+    D = system.alpha * M + system.beta * K + rows.T @ _diagonal(droppers.damping) @ rows
+    D = D + _moved(_diagonal(system.ground_damping) + system.linear_damping, place, size)
+    K = K + _moved(system.spring_stiffness(), place, size)
+    M = M + _moved(system.mass - system.wire_mass, place, size)
+    M, K, D = (matrix.tocsr() for matrix in (M, K, D))
+    for matrix in (M, K, D):
+        matrix.eliminate_zeros()
     vertical = np.concatenate([system.heights, system.heights + system.axes])
     return LinearModel(
         mass=M,
         stiffness=K,
         damping=D,
-        dropper_rows=(system.elongations() @ T[:whole]).tocsr(),
+        dropper_rows=rows,
         dropper_stiffness=droppers.stiffness,
         dropper_damping=droppers.damping,
         dropper_tension=np.where(pull > 0, pull, np.minimum(push, 0.0)),
@@ -159,8 +162,8 @@ def linear_model(system: System) -> LinearModel:
         gaps=_gaps(wires),
         links=_swinging_links(system, place),
         stretch=_stretch_coupling(system, wires, place),
-        imbalance=T[:whole].T @ system.out_of_balance(np.zeros(whole)),
-        patterns=(T[:whole].T @ system.time_patterns).tocsr(),
+        imbalance=own.T @ system.out_of_balance(np.zeros(whole)),
+        patterns=(own.T @ system.time_patterns).tocsr(),
         section_starts=starts,
         vertical=(vertical, place[vertical]),
         spatial=system.spatial,
@@ -283,67 +286,40 @@ def _reduced(
     )
 
 
-def _assemble(wires: list[_ReducedWire], whole: int) -> tuple[Any, Any]:
-    """Mass and stiffness of the wires over all coordinates and tensions."""
-    from scipy.sparse import coo_matrix
-
-    mass, stiffness = _Triplets(), _Triplets()
-    first = whole
+def _wire_matrices(wires: list[_ReducedWire], place: Integers, whole: int, size: int) -> tuple[Any, Any]:
+    """Mass and stiffness of the wires over the coordinates that are kept, sparse."""
+    mass, stiffness, first = [], [], whole
     for wire in wires:
         count = wire.gap_stiffness.size
         gaps = first + np.arange(count)
         first += count
-        stiffness.add_blocks(wire.across, wire.stiffness)
-        mass.add_blocks(wire.across, wire.mass)
-        mass.add_blocks(wire.gap_ends, wire.gap_mass[:, None, None] * np.array([[2.0, 1.0], [1.0, 2.0]]) / 6)
-        rows = np.repeat(gaps[wire.gap_of], wire.across.shape[1])
-        stiffness.add_pairs(rows, wire.across.ravel(), wire.lengthening.ravel())
-        stiffness.add_pairs(gaps, wire.gap_ends[:, 0], np.full(count, -1.0))
-        stiffness.add_pairs(gaps, wire.gap_ends[:, 1], np.full(count, 1.0))
-        stiffness.add(gaps, gaps, -1 / wire.gap_stiffness)
-    shape = (first, first)
-    return coo_matrix(mass.triplets(), shape=shape).tocsr(), coo_matrix(
-        stiffness.triplets(), shape=shape
-    ).tocsr()
+        mass.append((wire.across, wire.mass))
+        mass.append((wire.gap_ends, wire.gap_mass[:, None, None] * np.array([[2.0, 1.0], [1.0, 2.0]]) / 6))
+        of_tension = np.zeros((len(wire.across), 1 + wire.across.shape[1], 1 + wire.across.shape[1]))
+        of_tension[:, 1:, 1:] = wire.stiffness
+        of_tension[:, 0, 1:] = of_tension[:, 1:, 0] = wire.lengthening
+        stiffness.append((np.column_stack([gaps[wire.gap_of], wire.across]), of_tension))
+        of_gap = np.tile([[0.0, -1.0, 1.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], (count, 1, 1))
+        of_gap[:, 0, 0] = -1 / wire.gap_stiffness
+        stiffness.append((np.column_stack([gaps, wire.gap_ends]), of_gap))
+    return scattered(mass, size, place), scattered(stiffness, size, place)
 
 
-class _Triplets:
-    """Rows, columns and values of a sparse matrix that grows."""
-
-    def __init__(self) -> None:
-        self._parts: list[tuple[Integers, Integers, Floats]] = []
-
-    def add(self, rows: Integers, columns: Integers, values: Floats) -> None:
-        self._parts.append((rows, columns, values))
-
-    def add_pairs(self, rows: Integers, columns: Integers, values: Floats) -> None:
-        self.add(rows, columns, values)
-        self.add(columns, rows, values)
-
-    def add_blocks(self, index: Integers, blocks: Floats) -> None:
-        m = index.shape[1]
-        self.add(np.repeat(index, m, axis=1).ravel(), np.tile(index, (1, m)).ravel(), blocks.ravel())
-
-    def triplets(self) -> tuple[Floats, tuple[Integers, Integers]]:
-        rows, columns, values = (np.concatenate(part) for part in zip(*self._parts, strict=True))
-        return values, (rows, columns)
-
-
-def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, Integers, Integers]:
+def _kept(system: System, wires: list[_ReducedWire]) -> tuple[Any, Integers, Integers]:
     """T with q = T x, x the coordinates that are kept, by section and station.
 
     Also the place of each q in x, or FIXED, and where the sections begin in x. A gap's tension comes just
     before the gap's end that is farther from where the wire is held along the track: so each pivot is one
     without exchanging rows.
     """
-    from scipy.sparse import block_diag, identity
+    from scipy.sparse import csr_matrix
 
-    T = block_diag([system.transformation, identity(gaps)]).tocsc()
-    whole, width = T.shape[0] - gaps, 2 * system.axes
-    station = np.full(T.shape[0], np.nan)
-    section = np.append(system.section, np.zeros(gaps, dtype=np.int64))
-    section[whole:] = np.repeat(
-        [system.wires[wire.number].section for wire in wires], [wire.tension.size for wire in wires]
+    counts = [wire.tension.size for wire in wires]
+    whole, gaps, width = system.dof.size, sum(counts), 2 * system.axes
+    dof = np.append(system.dof, system.size + np.arange(gaps))
+    station = np.full(dof.size, np.nan)
+    section = np.append(
+        system.section, np.repeat([system.wires[wire.number].section for wire in wires], counts)
     )
     for wire in wires:
         line = system.wires[wire.number]
@@ -354,18 +330,18 @@ def _kept(system: System, wires: list[_ReducedWire], gaps: int) -> tuple[Any, In
         station[wire.gap_ends[0, 0]] = wire.gap_x[0]
     held = (system.dof == FIXED) | (system.ground_stiffness > 0)
     station[whole:] = np.concatenate([_tension_stations(wire, held) for wire in wires])
-    rows, columns = T.nonzero()
-    of_free, part = np.full(T.shape[1], np.nan), np.zeros(T.shape[1], dtype=np.int64)
-    of_free[columns], part[columns] = station[rows], section[rows]
-    is_tension = np.arange(T.shape[1]) >= T.shape[1] - gaps
-    order = np.lexsort((~is_tension, of_free, part))
+    moves = np.flatnonzero(dof >= 0)
+    of_free, part = np.full(system.size + gaps, np.nan), np.zeros(system.size + gaps, dtype=np.int64)
+    of_free[dof[moves]], part[dof[moves]] = station[moves], section[moves]
+    order = np.lexsort((np.arange(of_free.size) < system.size, of_free, part))
     order = order[np.isfinite(of_free[order])]
-    new = np.full(T.shape[1], FIXED, dtype=np.int64)
+    new = np.full(of_free.size, FIXED, dtype=np.int64)
     new[order] = np.arange(order.size)
-    place = np.full(T.shape[0], FIXED, dtype=np.int64)
-    place[rows] = new[columns]
+    place = np.where(dof >= 0, new[dof], FIXED)
     starts = np.searchsorted(part[order], np.arange(system.section_starts.size))
-    return T[:, order].tocsr(), place, starts
+    kept = np.flatnonzero(place >= 0)
+    T = csr_matrix((np.ones(kept.size), (kept, place[kept])), shape=(dof.size, order.size))
+    return T, place, starts
 
 
 def _tension_stations(wire: _ReducedWire, held: NDArray[np.bool_]) -> Floats:
@@ -378,13 +354,17 @@ def _tension_stations(wire: _ReducedWire, held: NDArray[np.bool_]) -> Floats:
     return np.where(np.arange(wire.tension.size) < first, wire.gap_x[:-1], wire.gap_x[1:])
 
 
+def _moved(matrix: Any, place: Integers, size: int) -> Any:
+    """A matrix over all coordinates as one over those that are kept, sparse."""
+    from scipy.sparse import csr_matrix
+
+    entries = matrix.tocoo()
+    rows, columns = place[entries.row], place[entries.col]
+    kept = (rows >= 0) & (columns >= 0) & (entries.data != 0)
+    return csr_matrix((entries.data[kept], (rows[kept], columns[kept])), shape=(size, size))
+
+
 def _diagonal(values: Floats) -> Any:
     from scipy.sparse import diags
 
     return diags(values).tocsr()
-
-
-def _padded(matrix: Any, extra: int) -> Any:
-    from scipy.sparse import block_diag, csr_matrix
-
-    return block_diag([matrix, csr_matrix((extra, extra))]).tocsr()

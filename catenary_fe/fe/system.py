@@ -184,6 +184,8 @@ class System:
         """
         paths = self.contact_paths
         there = [n for n, path in enumerate(paths) if path.meets(position)]
+        if len({paths[n].section for n in there}) == 1:
+            return there
         heights = {n: float(self.row(n, position) @ self.reference) for n in there}
         section = paths[min(there, key=heights.__getitem__)].section
         return [n for n in there if paths[n].section == section]
@@ -244,14 +246,18 @@ class System:
         wire : its number
         axis : 0 along the track, -1 up, 1 in space to the left
         """
+        row = np.zeros(self.dof.size)
+        np.put(row, *self.weights(wire, x, axis))
+        return row
+
+    def weights(self, wire: int, x: float, axis: int = -1) -> tuple[Integers, Floats]:
+        """Numbers and weights, shape (4,) each, of what is not 0 in :meth:`row`."""
         nodes, axes = self.wires[wire], self.axes
         e = int(np.clip(np.searchsorted(nodes.x, x, side="right") - 1, 0, nodes.x.size - 2))
         first = 2 * axes * (nodes.first + e) + axis % axes
         length = self.cables.length[np.searchsorted(self.first, 2 * axes * (nodes.first + e))]
-        row = np.zeros(self.dof.size)
         share = (x - nodes.x[e]) / (nodes.x[e + 1] - nodes.x[e])
-        row[first + axes * np.arange(4)] = hermite(share, length)
-        return row
+        return first + axes * np.arange(4), hermite(share, length)
 
     def distributed(self, per_length: Floats, axis: int = -1) -> Floats:
         """[N], shape (all,): forces of a load along the wires.
@@ -317,8 +323,7 @@ class System:
         """
         total = self.reference + moved
         parts = [self._wire_part(total), *self._spring_parts(total, taut)]
-        linear = self.transformation.T @ self.linear_stiffness @ self.transformation
-        return scattered(parts, self.size, self.dof) + linear
+        return scattered(parts, self.size, self.dof) + self.free(self.linear_stiffness)
 
     def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
         index = self.elements()

@@ -221,7 +221,7 @@ class Catenary(Parameters):
         found: NDArray[np.int64] = np.array(numbers, dtype=np.int64)[self.hanging]
         return found
 
-    @property
+    @cached_property
     def departs_from_design(self) -> bool:
         """Whether droppers are gone, clamps have slid, the contact wire has worn, or was hung otherwise."""
         return bool(changes_of(self))

@@ -124,12 +124,11 @@ def dropper_names(catenary: Catenary) -> list[str]:
 def check_lengths(catenary: Catenary) -> None:
     """Raises InputError where some droppers have a length and others none: no rule says how to hang those."""
     designed = catenary.as_designed()
-    names = dropper_names(designed)
-    missing = [name for name, d in zip(names, designed.droppers, strict=True) if d.length is None]
-    if len(missing) not in (0, len(names)):
+    missing = [i for i, dropper in enumerate(designed.droppers) if dropper.length is None]
+    if len(missing) not in (0, count := len(designed.droppers)):
         raise InputError(
-            f"{missing[0]} has no length: {len(missing)} of {len(names)} droppers have none, the others have"
-            " one; give all lengths, or none to have them found"
+            f"{dropper_names(designed)[missing[0]]} has no length: {len(missing)} of {count} droppers have"
+            " none, the others have one; give all lengths, or none to have them found"
         )
 
 

@@ -247,14 +247,15 @@ def _start_transient(run: Run) -> Iterator[Check]:
     if not equal:
         return
     found = []
-    for a, b in equal:
-        for s, t in zip(run.contact_force_statistics([a]), run.contact_force_statistics([b]), strict=True):
+    for i, force in enumerate(run.filtered_contact_force()):
+        for spans in equal:
+            s, t = (float(force[run.window(i, [span])].std()) for span in spans)
             text = (
-                f"so far σ of {s.pantograph} in the equal spans {a} and {b} differs, {s.std:.1f} and"
-                f" {t.std:.1f} N: what is left of the start or comes back from the end is still there;"
+                f"so far σ of {name_of(run, i)} in the equal spans {spans[0]} and {spans[1]} differs, {s:.1f}"
+                f" and {t:.1f} N: what is left of the start or comes back from the end is still there;"
                 " evaluate spans further from both"
             )
-            found.append((200 * abs(s.std - t.std) / (s.std + t.std or 1.0), text))
+            found.append((200 * abs(s - t) / (s + t or 1.0), text))
     value, text = worst(found)
     yield Check("start transient", value, "%", "at most", 100 * SPREAD, text)
 

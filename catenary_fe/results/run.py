@@ -65,7 +65,7 @@ class Run:
         """How it was computed: 'nonlinear', 'linearised' or 'exudyn'."""
         return str(self.data.attrs["method"])
 
-    @property
+    @cached_property
     def catenary(self) -> Catenary:
         """The catenary that was run on."""
         return recorded_catenary(self.data.attrs["catenary"])
@@ -76,7 +76,7 @@ class Run:
         text = self.data.attrs.get("conditions")
         return Conditions.model_validate_json(text) if text else None
 
-    @property
+    @cached_property
     def pantographs(self) -> tuple[AnyPantograph, ...]:
         """The pantographs that ran, in the order of the data."""
         return recorded_pantographs(self.data.attrs["pantographs"])
@@ -118,7 +118,7 @@ class Run:
         failed = (f"{FAILED}{check}" for check in self.checks if not check.passed)
         return (*partial, *json.loads(self.data.attrs["warnings"]), *failed)
 
-    @property
+    @cached_property
     def time(self) -> Floats:
         """[s], shape (times,)."""
         return np.asarray(self.data["time"].values)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.fe.assembly import balanced
 from catenary_fe.fe.cable import scattered
 from catenary_fe.fe.equipment import lumped
-from catenary_fe.fe.installation import Installation, curve_pulls, point_masses
+from catenary_fe.fe.installation import Installation, point_masses
 from catenary_fe.fe.mesh import MeshSettings, make_mesh
 from catenary_fe.fe.spring import spring_blocks
 from catenary_fe.fe.track import cant_forces, leaning_weights
@@ -78,7 +78,7 @@ class WireSubstructures:
         wires = self.wires
         rise = self.found[:, wires.dof[wires.left + 1]] - self.found[:, wires.dof[wires.left]]
         arc = np.sqrt(1 + ((rise / wires.length) ** 2).sum(axis=0))
-        stretch = 1 + (arc * wires.tension - wires.of_wire("tension")) / wires.of_wire("axial_stiffness")
+        stretch = 1 + (arc * wires.tension - wires.nominal_tension) / wires.axial_stiffness
         ratio: Floats = arc / stretch
         return ratio
 
@@ -87,7 +87,7 @@ class WireSubstructures:
         weight = self.wires.weight * self._length_ratio()
         loads = -GRAVITY * weight[None]
         if self.axes == 3:
-            loads = np.stack([np.concatenate(curve_pulls(self.catenary, self.mesh)) * weight, loads[0]])
+            loads = np.stack([self.wires.curve_pulls * weight, loads[0]])
         return loads
 
     def _arms(self) -> list[tuple[int, int, int, SteadyArm]]:
@@ -323,11 +323,11 @@ class WireSubstructures:
         check_arms(self.catenary, arm_forces)
         lines = installed_lines(wires, points, np.column_stack(slopes))
         balance = np.zeros(2 * self.axes * n)
-        installation = balanced(
+        installation, system = balanced(
             self.catenary, mesh, Installation(lines, lengths, arm_forces, support_forces, balance)
         )
         span = self.spread()
-        return Shape(
+        shape = Shape(
             catenary=self.catenary,
             mesh_settings=self.settings,
             mesh=mesh,
@@ -336,6 +336,8 @@ class WireSubstructures:
             dropper_forces=self.tensions(lengths, span),
             installed_lengths=np.linalg.norm(span, axis=1),
         )
+        shape.__dict__["system"] = system  # it is assembled already
+        return shape
 
     def _with_springs(self, reactions: Floats) -> Floats:
         """[N], shape (axes - 1, 2 * nodes): reactions, and forces of what was set before."""

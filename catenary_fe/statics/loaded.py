@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.fe.cable import Cables, inner_forces, tangent_blocks
+from catenary_fe.fe.cable import Cables, inner_forces, scattered, tangent_blocks
 from catenary_fe.fe.cuts import elements_across, only, part_between
-from catenary_fe.fe.spring import spring_blocks
+from catenary_fe.fe.spring import FIXED, spring_blocks
 from catenary_fe.fe.system import System
 from catenary_fe.layout import SolverError
 from catenary_fe.statics.newton import solve_loaded
@@ -49,6 +49,17 @@ class LoadedLine:
             for wire in wires:
                 load += float(force) / len(wires) * self.system.row(wire, float(x))
         return load
+
+    def _free_loads(self, positions: Floats, force: float) -> Floats:
+        """[N], shape (points, free): of a force [N] at each place [m], as :meth:`load` has them."""
+        loads = np.zeros((positions.size, self.system.size))
+        for load, x in zip(loads, positions.tolist(), strict=True):
+            wires = self.system.served(x)
+            for wire in wires:
+                index, weights = self.system.weights(wire, x)
+                free = self.system.dof[index]
+                load[free[free >= 0]] += force / len(wires) * weights[free >= 0]
+        return loads
 
     def solve(self, positions: Sequence[float] | Floats, forces: Sequence[float] | Floats) -> Floats:
         """Displacements, shape (all,), under upward forces [N] at places [m] along the line.
@@ -89,16 +100,17 @@ class LoadedLine:
             near, far = (
                 supports[[max(number - n, 0), min(number + 1 + n, supports.size - 1)]] for n in (_NEAR, _FAR)
             )
-            loads = np.stack([system.gather(self.load([x], [force])) for x in positions[mine]])
+            loads = self._free_loads(positions[mine], force)
             around = _Surroundings(self, stiffness, near, far)
-            moved = around.corrected(factor.solve(loads.T).T, loads)
+            linear = factor.solve(loads.T).T
+            moved = around.corrected(linear, loads)
             if moved is None:
                 lifts[mine] = [self._lift(float(x), force) for x in positions[mine]]
             else:
-                # what is left at the ends of that part of the line
+                # what is left at the ends of that part of the line moves the points by their influence
                 residual = loads - (stiffness @ moved.T).T
                 residual[:, around.part] += around.extra(moved)
-                lifts[mine] = (loads * (moved + factor.solve(residual.T).T)).sum(axis=1) / force
+                lifts[mine] = (loads * moved + linear * residual).sum(axis=1) / force
             if progress:
                 progress((int(mine[-1]) + 1) / positions.size)
         return lifts
@@ -125,11 +137,13 @@ class _Surroundings:
         free = system.dof[around & (system.dof >= 0)]
         self.part = slice(int(free.min()), int(free.max()) + 1)  # they are numbered by station
         # cut towards what holds it along the track a wire is held, at its other end it moves as under weights
-        rest = np.zeros(x.size)
-        for n, cut in enumerate(far):
-            if cut > 0:
-                stiffness = stiffness - _loose(system, x, cut + 1e-6, n == 0).tangent(rest)
-        self._stiffness = stiffness[self.part, self.part]
+        cuts = [_loose(system, x, cut + 1e-6, n == 0) for n, cut in enumerate(far) if cut > 0]
+        loose = only(system, np.concatenate([np.zeros(0, dtype=np.int64), *cuts]))
+        at_rest = system.reference[loose.elements()].reshape(-1, 4, system.axes)
+        inside, size = system.dof - self.part.start, self.part.stop - self.part.start
+        place = np.where(inside < size, inside, FIXED)  # below 0 what lies before it
+        taken = scattered([(loose.elements(), tangent_blocks(loose.cables, at_rest))], size, place)
+        self._stiffness = stiffness[self.part, self.part] - taken
         self._factor = splu(self._stiffness.tocsc(), **_NARROW)
         self._take(part_between(system, x, near[0] - 1e-6, near[1] + 1e-6))
         rest = self._reference[self._index].reshape(-1, 4, system.axes)
@@ -185,10 +199,10 @@ class _Surroundings:
         here = moved[:, self._index]
         total = (self._reference[self._index] + here).reshape(-1, 4, self.axes)
         inner = inner_forces(many, total).reshape(points, *self._index.shape)
-        linear = np.einsum("eij,pej->pei", self._blocks, here)
+        linear = _each(self._blocks, here)
         found = _summed(linear + self._inner.reshape(self._index.shape) - inner, self._index, size)
         for springs, (index, blocks, forces) in zip(self._springs, self._at_rest, strict=True):
-            linear = np.einsum("eij,pej->pei", blocks, moved[:, index])
+            linear = _each(blocks, moved[:, index])
             now = springs.forces(self._reference + moved)
             found += _summed(now - forces + linear, index, size)
         extra: Floats = (self._gather @ found.T).T
@@ -253,18 +267,25 @@ class _Surroundings:
         return self._known[dropper, number]
 
 
-def _loose(system: System, x: Floats, cut: float, left: bool) -> System:
-    """The elements across a cut [m] of wires that nothing holds along the track beyond it.
+def _loose(system: System, x: Floats, cut: float, left: bool) -> Integers:
+    """Numbers of the elements across a cut [m] of wires that nothing holds along the track beyond it.
 
     x : [m], shape (all,), stations of the coordinates
     left : beyond it is on its left, else on its right
     """
     across = elements_across(system, x, cut)
     firsts = [wire.first for wire in system.wires]
-    owner = np.searchsorted(firsts, across.first // (2 * system.axes), side="right") - 1
+    owner = np.searchsorted(firsts, system.first[across] // (2 * system.axes), side="right") - 1
     holds = [system.holds(int(n)) for n in owner]
     held = [bool(((at <= cut) if left else (at > cut)).any()) for at in holds]
-    return only(across, ~np.array(held, dtype=bool))
+    loose: Integers = across[~np.array(held, dtype=bool)]
+    return loose
+
+
+def _each(blocks: Floats, values: Floats) -> Floats:
+    """Shape (points, blocks, m): blocks of shape (blocks, m, m) by values of shape (points, blocks, m)."""
+    product: Floats = np.matmul(blocks, values.transpose(1, 2, 0)).transpose(2, 0, 1)
+    return product
 
 
 def _summed(values: Floats, index: Integers, size: int) -> Floats:

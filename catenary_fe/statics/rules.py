@@ -23,10 +23,9 @@ _LEAST_PULL = 1.0  # [N] lateral
 def check_pulls(catenary: Catenary, pulls: Floats) -> None:
     """Raises InputError for droppers that would have to push."""
     _report(
-        f"{name} would have to push with {-force:.1f} N; droppers only pull: change the pre-sag, the height"
-        " there or the position"
-        for name, force in zip(dropper_names(catenary), pulls, strict=True)
-        if force < 0
+        f"{dropper_names(catenary)[i]} would have to push with {-pulls[i]:.1f} N; droppers only pull: change"
+        " the pre-sag, the height there or the position"
+        for i in np.flatnonzero(pulls < 0)
     )
 
 
@@ -34,10 +33,9 @@ def check_room(catenary: Catenary, heights: Floats) -> None:
     """Raises InputError for droppers whose upper clamp lies below the lower one."""
     tension = catenary.messenger_wire.tension if catenary.messenger_wire else 0.0
     _report(
-        f"{name} has no room: the wire it hangs on lies {abs(height):.3f} m below its lower clamp; raise"
-        f" system_height or the messenger wire's tension of {tension:g} N"
-        for name, height in zip(dropper_names(catenary), heights, strict=True)
-        if height <= 0
+        f"{dropper_names(catenary)[i]} has no room: the wire it hangs on lies {abs(heights[i]):.3f} m below"
+        f" its lower clamp; raise system_height or the messenger wire's tension of {tension:g} N"
+        for i in np.flatnonzero(heights <= 0)
     )
 
 
@@ -47,14 +45,12 @@ def check_stretch(catenary: Catenary, distances: Floats, tensions: Floats) -> No
     distances : [m], shape (droppers,), between their clamps
     tensions : [N], shape (droppers,)
     """
+    stiffness = np.array([dropper.stiffness for dropper in catenary.droppers])
     _report(
-        f"{name}: stiffness = {dropper.stiffness:g} N/m is too small: its tension of {tension:.0f} N would"
-        f" stretch it by {tension / dropper.stiffness:.3g} m, and it spans"
-        f" {distance:.3g} m; raise it, look at its unit"
-        for name, dropper, distance, tension in zip(
-            dropper_names(catenary), catenary.droppers, distances, tensions, strict=True
-        )
-        if tension / dropper.stiffness >= distance
+        f"{dropper_names(catenary)[i]}: stiffness = {stiffness[i]:g} N/m is too small: its tension of"
+        f" {tensions[i]:.0f} N would stretch it by {tensions[i] / stiffness[i]:.3g} m, and it spans"
+        f" {distances[i]:.3g} m; raise it, look at its unit"
+        for i in np.flatnonzero(tensions / stiffness >= distances)
     )
 
 

@@ -136,6 +136,21 @@ class TautWires:
         return self.of_wire("mass_per_length")
 
     @cached_property
+    def axial_stiffness(self) -> Floats:
+        """[N], shape (elements,)."""
+        return self.of_wire("axial_stiffness")
+
+    @cached_property
+    def nominal_tension(self) -> Floats:
+        """[N], shape (elements,), along the wires."""
+        return self.of_wire("tension")
+
+    @cached_property
+    def curve_pulls(self) -> Floats:
+        """[N/kg], shape (elements,), to the left, by the elements' masses."""
+        return np.concatenate(curve_pulls(self.catenary, self.mesh))
+
+    @cached_property
     def bending_stiffness(self) -> Floats:
         """[N m²], shape (elements,)."""
         return self.of_wire("bending_stiffness")
@@ -163,10 +178,17 @@ class TautWires:
         """Shape (2 * nodes,): unknowns that no element has."""
         return np.asarray(self.stiffness.diagonal() == 0)
 
+    @cached_property
+    def order(self) -> Integers:
+        """Shape (2 * nodes,): numbers of the unknowns along the track, in which matrices are narrow."""
+        return np.argsort(np.tile(self.x, 2), kind="stable")
+
     def problem(self, held: Mapping[int, float], springs: Any = None) -> TautProblem:
         """The wires held at some displacements [m] by their number, with springs in a sparse matrix [N/m]."""
         K = self.stiffness if springs is None else (self.stiffness + springs).tocsr()
-        return TautProblem(K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle)
+        return TautProblem(
+            K, np.array(list(held), dtype=np.int64), np.array(list(held.values())), self.idle, self.order
+        )
 
     def slopes(self, found: Floats, per_length: Floats) -> Floats:
         """Shape (nodes,): slopes under a load [N/m]; where a string kinks, the mean of both sides.
@@ -189,15 +211,19 @@ class TautProblem:
     reactions of a solution are the forces that hold what is held.
     """
 
-    def __init__(self, stiffness: Any, held: Integers, values: Floats, idle: NDArray[np.bool_]) -> None:
+    def __init__(
+        self, stiffness: Any, held: Integers, values: Floats, idle: NDArray[np.bool_], order: Integers
+    ) -> None:
         from scipy.sparse.linalg import splu
 
         self._stiffness, self._held, self._values = stiffness, held, values
         free = ~idle
         free[held] = False
-        self._free = np.flatnonzero(free)
+        self._free = order[free[order]]
         inner = stiffness[self._free][:, self._free].tocsc()
-        self._factor = splu(inner, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        self._factor = splu(
+            inner, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
 
     def solve(self, force: Floats) -> tuple[Floats, Floats]:
         """Displacements and slopes, and reactions [N], under forces [N]; all of shape (2 * nodes,)."""
@@ -210,8 +236,9 @@ class TautProblem:
 
 
 _ITERATIONS = 40
-_FACTORS = 2  # iterations with a tangent of their own: after them it hardly changes
+_NEAR = 1e-4  # turn of a slope, after which the tangent hardly changes
 _ENOUGH = 1e-6  # which the balance takes up: 17 N of EA ε
+_SMALL = 1e-6  # change of lengths that derivatives are taken by
 _SETTLED = 1e-9  # change of slopes and, by their length, of lengths
 
 
@@ -238,30 +265,47 @@ def installed_lines(wires: TautWires, points: Floats, inclinations: Floats) -> t
 
 
 def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[Floats, Floats]:
-    """Slopes, shape (nodes, axes), and element lengths [m] in balance."""
-    from scipy.linalg import cho_solve_banded
+    """Slopes, shape (nodes, axes), and element lengths [m] in balance, by Newton's method.
+
+    An element's length follows from its tension: what a turn of its ends does to that, the length undoes.
+    """
+    from scipy.linalg import solve_banded
 
     axes, left = points.shape[1], wires.left
     slopes = np.concatenate([line.slopes for line in lines])
     lengths = np.concatenate([line.lengths for line in lines])
-    EA, T = wires.of_wire("axial_stiffness"), wires.of_wire("tension")
+    EA, T = wires.axial_stiffness, wires.nominal_tension
     pull = np.zeros((left.size, axes))  # [N/kg]
     pull[:, -1] = -GRAVITY
     if axes == 3:
-        pull[:, 1] = np.concatenate(curve_pulls(wires.catenary, wires.mesh))
+        pull[:, 1] = wires.curve_pulls
     index = (left[:, None] * axes + np.arange(2 * axes)).astype(np.int64)
-    for iteration in range(_ITERATIONS):
+    of_slopes = np.concatenate([axes + np.arange(axes), 3 * axes + np.arange(axes)])
+
+    def left_over(values: Floats, lengths: Floats) -> tuple[Cables, Floats, Floats]:
+        """The elements, moments at their ends, and what they pull too much [N]."""
         cables = Cables(lengths, EA, wires.bending_stiffness, -T / EA)
-        values = np.stack([points[left], slopes[left], points[left + 1], slopes[left + 1]], axis=1)
         inner = inner_forces(cables, values)
         moment = (wires.weight * lengths**2 / 12)[:, None] * pull
         moments = np.concatenate([moment - inner[:, 1], -moment - inner[:, 3]], axis=1)
-        if iteration < _FACTORS:
-            factor = _factor(index, tangent_blocks(cables, values, definite=True), axes, slopes.size)
-        out = np.bincount(index.ravel(), moments.ravel(), minlength=slopes.size)
-        turn = cho_solve_banded((factor, False), out).reshape(slopes.shape)
-        longer = (inner[:, 2, 0] - wires.tension) / EA
-        slopes, lengths = slopes + turn, lengths * (1 + longer)
+        return cables, moments, inner[:, 2, 0] - wires.tension
+
+    turn = np.array(np.inf)
+    for _ in range(_ITERATIONS):
+        values = np.stack([points[left], slopes[left], points[left + 1], slopes[left + 1]], axis=1)
+        cables, moments, excess = left_over(values, lengths)
+        if np.abs(turn).max() > _NEAR:
+            blocks = tangent_blocks(cables, values, definite=True)
+            _, longer_moments, longer_excess = left_over(values, lengths * (1 + _SMALL))
+            by_turn = blocks[:, 2 * axes, of_slopes]
+            by_length = (longer_excess - excess) / _SMALL
+            by_excess = (longer_moments - moments) / _SMALL / by_length[:, None]
+            coupled = blocks[:, of_slopes[:, None], of_slopes] + by_excess[:, :, None] * by_turn[:, None]
+            bands = _banded(index, coupled, slopes.size)
+        out = np.bincount(index.ravel(), (moments - by_excess * excess[:, None]).ravel(), slopes.size)
+        turn = solve_banded((2 * axes - 1, 2 * axes - 1), bands, out)
+        longer = -(excess + (by_turn * turn[index]).sum(axis=1)) / by_length
+        slopes, lengths = slopes + turn.reshape(slopes.shape), lengths * (1 + longer)
         if max(np.abs(turn).max(), np.abs(longer).max()) < _SETTLED:
             return slopes, lengths
     if not np.abs(longer).max() < _ENOUGH:
@@ -273,21 +317,13 @@ def _settled(wires: TautWires, points: Floats, lines: list[WireLine]) -> tuple[F
     return slopes, lengths
 
 
-def _factor(index: Integers, blocks: Floats, axes: int, size: int) -> Floats:
-    """Banded Cholesky factor of the slopes' stiffness.
+def _banded(index: Integers, blocks: Floats, size: int) -> Floats:
+    """A matrix of blocks, shape (elements, m, m), as scipy has banded ones.
 
-    index : shape (elements, 2 * axes), numbers of the slopes
-    blocks : shape (elements, 4 * axes, 4 * axes), of points and slopes
+    index : shape (elements, m), numbers of the rows, which follow one another
     """
-    from scipy.linalg import cholesky_banded
-
-    of_slopes = np.concatenate([axes + np.arange(axes), 3 * axes + np.arange(axes)])
-    row, column = np.triu_indices(2 * axes)
-    bands = np.zeros((2 * axes, size))
-    np.add.at(
-        bands,
-        (2 * axes - 1 + row - column, index[:, column]),
-        blocks[:, of_slopes[row], of_slopes[column]],
-    )
-    factor: Floats = cholesky_banded(bands)
-    return factor
+    width = index.shape[1]
+    row, column = np.indices((width, width))
+    bands = np.zeros((2 * width - 1, size))
+    np.add.at(bands, (width - 1 + row - column, index[:, column]), blocks)
+    return bands

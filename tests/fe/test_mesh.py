@@ -50,3 +50,15 @@ def test_halved_meshes_are_finer_everywhere(reference):
 def test_bad_wishes(wish):
     with pytest.raises(cf.InputError, match="mesh: "):
         cf.MeshSettings(**wish)
+
+
+def test_neighbouring_designs_share_stations_that_nobody_can_change(reference):
+    wire = reference.contact_wire
+    other = reference.replace(contact_wire=wire.replace(tension=1.1 * wire.tension))
+    settings = cf.MeshSettings()
+    first, second = (make_mesh(line, settings).contact.x for line in (reference, other))
+    assert first is second
+    with pytest.raises(ValueError, match="read-only"):
+        first[0] = 1.0
+    finer = cf.MeshSettings(contact_wire_element=settings.contact_wire_element / 2)
+    assert make_mesh(reference, finer).contact.x.size > first.size

@@ -215,3 +215,14 @@ def test_the_balance_vanishes_with_the_elements(shape):
     coarse, fine = (hung_elsewhere(shape.catenary, length) for length in (0.5, 0.02))
     assert 3e-4 < coarse < 4e-3
     assert fine < 0.06 * coarse
+
+
+@pytest.mark.parametrize("name", ["en50318_2002", "re330"])
+def test_the_system_of_form_finding_is_the_assembled_one(name):
+    find, path = LINES[name]
+    shape = cf.find_form(find(path))
+    again = assemble(shape.catenary, shape.mesh, shape.installation)
+    for field in ("reference", "force", "dof", "ground_stiffness"):
+        np.testing.assert_array_equal(getattr(shape.system, field), getattr(again, field))
+    assert np.abs(again.gather(again.out_of_balance(0 * again.reference))).max() < 1e-4
+    assert np.abs(shape.installation.balance).max() > 1  # negative control: what this takes

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
 from catenary_fe.engines.linearised.arrays import (
-    ComplianceColumns,
     Line,
     Operator,
     SteadyArmBars,
     StretchCoupling,
 )
+from catenary_fe.engines.linearised.columns import compliance_columns
 from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.engines.settings import TimeSettings
@@ -30,8 +30,6 @@ from catenary_fe.fe.system import System
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-NEGLIGIBLE = 1e-6  # of a column's largest entry
-_SPACING = 640  # rows between columns that are found together, at first
 _Each = TypeVar("_Each")
 
 
@@ -188,12 +186,12 @@ def _line(model: LinearModel, factor: Any) -> Line:
         at=at,
         across=np.concatenate([wire.across_dof for wire in contacts]),
         column=column,
-        contact_compliance=_columns(factor, units, starts),
+        contact_compliance=compliance_columns(factor, units, starts),
         rows=csr_rows(model.dropper_rows),
         k=model.dropper_stiffness,
         d=model.dropper_damping,
         tension=model.dropper_tension,
-        dropper_compliance=_columns(factor, model.dropper_rows.T.tocsc(), starts),
+        dropper_compliance=compliance_columns(factor, model.dropper_rows.T.tocsc(), starts),
         links=_links(model, factor),
         stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
         load=model.load,
@@ -211,58 +209,5 @@ def _links(model: LinearModel, factor: Any) -> SteadyArmBars:
     links = model.links
     at = links.index.ravel()
     units = csc_matrix((np.ones(at.size), (at, np.arange(at.size))), shape=(model.size, at.size))
-    compliance = _columns(factor, units, model.section_starts)
+    compliance = compliance_columns(factor, units, model.section_starts)
     return SteadyArmBars(links.index, links.span, links.length, links.stiffness, compliance)
-
-
-def _columns(factor: Any, right: Any, starts: Integers) -> ComplianceColumns:
-    """Columns of the inverse times ``right``, many at once: in one step a force is felt nearby only.
-
-    starts : shape (sections + 1,), rows where sections begin; a column stays in its own one if that has room
-    """
-    size, count = right.shape
-    if not count:
-        return ComplianceColumns(np.zeros(0, dtype=np.int64), np.zeros((0, 1)))
-    owner = np.repeat(np.arange(count), np.diff(right.indptr))
-    middle = (np.bincount(owner, right.indices) / np.bincount(owner)).astype(np.int64)
-    spacing = _SPACING
-    while True:
-        low, values = _combed(factor, right, middle, spacing)
-        large = np.abs(values) > NEGLIGIBLE * np.abs(values).max(axis=1, keepdims=True)
-        if spacing > 2 * size or not (large[:, 0] | large[:, -1]).any():
-            break
-        spacing *= 2  # neighbours overlap
-    begin, end = large.argmax(axis=1), spacing - large[:, ::-1].argmax(axis=1)
-    width = int((end - begin).max())
-    # all are as wide as the widest: the room to spare, to both sides
-    section = np.searchsorted(starts, middle, side="right")
-    first = np.clip(low + (begin + end - width) // 2, starts[section - 1], starts[section] - width)
-    first = np.clip(first, 0, size - width)
-    inside = first[:, None] + np.arange(width) - low[:, None]
-    value = np.take_along_axis(values, np.clip(inside, 0, spacing - 1), axis=1)
-    return ComplianceColumns(first, np.where((inside >= 0) & (inside < spacing), value, 0.0))
-
-
-def _combed(factor: Any, right: Any, middle: Integers, spacing: int) -> tuple[Integers, Floats]:
-    """First rows of the columns' windows, and what is in them, shape (columns, spacing).
-
-    ComplianceColumns at least this far apart are solved for in one go.
-    """
-    size, count = right.shape
-    order = np.argsort(middle, kind="stable")
-    values = np.empty((count, spacing))
-    low = middle - spacing // 2
-    around = np.zeros(size + 2 * spacing)
-    left = np.ones(count, dtype=bool)
-    while left.any():
-        chosen, last = [], -spacing
-        for i in order[left[order]].tolist():
-            if middle[i] >= last + spacing:
-                chosen.append(i)
-                last = middle[i]
-        left[chosen] = False
-        which = np.zeros(count)
-        which[chosen] = 1.0
-        around[spacing : spacing + size] = factor.solve(right @ which)
-        values[chosen] = around[spacing + low[chosen, None] + np.arange(spacing)]
-    return low, values
