@@ -11,6 +11,13 @@ from catenary_fe.engines.compiled import compiled
 
 
 @compiled
+def copy(values: Floats, x: Floats) -> None:
+    """x = values; as a slice it would make room for another copy, should the two overlap."""
+    for i in range(x.size):
+        x[i] = values[i]
+
+
+@compiled
 def add_loads(rows: CsrRows, signals: Floats, x: Floats) -> None:
     """Loads that vary in time, at one time; signals of shape (loads,)."""
     start, column, value = rows

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from kernels import entry
+from kernels import entry, feel
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
@@ -302,7 +302,8 @@ def test_the_last_step_to_the_circle_squares_the_error(twin_setup, y, z):
     setup, links = twin_setup, twin_setup.line.links
     slots = Batch(setup, Sizes(1, 1, 1, 1), 1)
     slots.wires.q[links.at[0], 0] = y, z
-    entry(update_arm)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
+    change = entry(update_arm)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
+    feel(slots.wires, links.compliance, change)
     moved = (slots.wires.q + setup.scheme.b * slots.wires.x)[links.at, 0]
     assert slots.work.arm_force[0, 0] == pytest.approx(beyond_tangent(links, moved)[0], abs=1e-6)
 
@@ -394,5 +395,7 @@ class Dropper:
 
     def relaxed(self):
         """Its spring's and damper's force after having been brought to its law."""
-        entry(update_dropper)(self.scheme, self.line, self.slots.wires, self.slots.work, 0, self.i)
+        wires = self.slots.wires
+        change = entry(update_dropper)(self.scheme, self.line, wires, self.slots.work, 0, self.i)
+        feel(wires, self.line.dropper_compliance, [change], self.i)
         return tuple(force + c * self.taken for force, c in zip(self._at, self.gives, strict=True))

@@ -93,3 +93,17 @@ class Line(NamedTuple):
     supports: Integers
     heights: Integers
     tensions: Integers
+
+
+class Near(NamedTuple):
+    """The coordinates that the laws of one slot's forces read: while these are sought, they alone move.
+
+    at : shape (room,), numbers of the coordinates, ``many[0]`` of them
+    free : [m/s²], shape (room,), their accelerations without what is owed
+    owed : [N], shape (contacts + droppers + 2 links,), changes of forces that all others have yet to feel
+    """
+
+    at: Integers
+    many: Integers
+    free: Floats
+    owed: Floats

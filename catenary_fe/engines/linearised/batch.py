@@ -25,6 +25,7 @@ from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.history import History
 from catenary_fe.engines.kernels import (
     add_loads,
+    copy,
     lower_eight,
     lower_one,
     take_eight,
@@ -33,7 +34,7 @@ from catenary_fe.engines.kernels import (
     upper_one,
 )
 from catenary_fe.engines.linearised import arrays, forces, stretch
-from catenary_fe.engines.linearised.arrays import Line, Operator
+from catenary_fe.engines.linearised.arrays import Line, Near, Operator
 from catenary_fe.engines.linearised.forces import record, solve_contacts
 from catenary_fe.engines.linearised.leg import Leg
 from catenary_fe.engines.linearised.setup import Setup
@@ -93,6 +94,13 @@ class Batch:
             head=np.zeros((slots, j, m)),
             head_compliance=np.zeros((slots, j, m)),
         )
+        room = 4 * j + line.rows.column.size + line.links.at.size
+        self.near = Near(
+            at=np.zeros(room, dtype=np.int64),
+            many=np.zeros(1, dtype=np.int64),
+            free=np.zeros(room),
+            owed=np.zeros(j + line.k.size + line.links.at.size),
+        )
         counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
         self._new_records = partial(make_records, slots, sizes, counts, every, spatial=setup.model.spatial)
         self.records = self._new_records()
@@ -123,7 +131,7 @@ class Batch:
             own = self._leg_of(steps)
         operator, line, wires, work, records = own
         flat = Wires(*(array.reshape(-1) for array in wires))
-        rest = (self.signals, wires, flat, self.heads, self.pantographs, work, records, steps)
+        rest = (self.signals, wires, flat, self.heads, self.pantographs, work, self.near, records, steps)
         with vectorising():
             take = _advance_one if self.count == 1 else _advance_eight
             take(self._setup.scheme, operator, line, *rest)
@@ -172,13 +180,14 @@ def _finish(
     heads: PantographParameters,
     pantographs: PantographState,
     work: Work,
+    near: Near,
     records: Records,
 ) -> None:
     """Forces and records of all slots."""
     for c in range(pantographs.step.size):
         if pantographs.step[c] < heads.last[c]:
             advance_heads(scheme, pantographs, c)
-            solve_contacts(scheme, line, wires, heads, pantographs, work, records, c)
+            solve_contacts(scheme, line, wires, heads, pantographs, work, near, records, c)
             record(scheme, line, wires, heads, pantographs, work, records, c)
             pantographs.step[c] += 1
 
@@ -197,19 +206,20 @@ def _loops(sources: str) -> tuple[Any, Any]:
         heads: PantographParameters,
         pantographs: PantographState,
         work: Work,
+        near: Near,
         records: Records,
         steps: int,
     ) -> int:
         for _ in range(steps):
             predict(scheme, operator.beta, flat)
-            flat.x[:] = line.load
+            copy(line.load, flat.x)
             add_loads(line.patterns, signals[:, pantographs.step[0] + 1], flat.x)
             take_one(operator.stiffness, flat.w, flat.x)
             take_one(operator.rest, flat.v, flat.x)
             couple_stretch_one(line, flat.q, work.tension[0], flat.x)
             lower_one(operator.lower, flat.x, 0, flat.x.size // 4)
             upper_one(operator.upper, operator.inverse, flat.x, 0, flat.x.size // 4)
-            _finish(scheme, line, wires, heads, pantographs, work, records)
+            _finish(scheme, line, wires, heads, pantographs, work, near, records)
         return len(sources)
 
     @kept
@@ -223,6 +233,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
         heads: PantographParameters,
         pantographs: PantographState,
         work: Work,
+        near: Near,
         records: Records,
         steps: int,
     ) -> int:
@@ -237,7 +248,7 @@ def _loops(sources: str) -> tuple[Any, Any]:
             couple_stretch_eight(line, wires.q, work.tension, wires.x)
             lower_eight(operator.lower, wires.x)
             upper_eight(operator.upper, operator.inverse, wires.x)
-            _finish(scheme, line, wires, heads, pantographs, work, records)
+            _finish(scheme, line, wires, heads, pantographs, work, near, records)
         return len(sources)
 
     return one, eight
