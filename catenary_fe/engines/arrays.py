@@ -27,7 +27,8 @@ class PackedRows(NamedTuple):
 
     column : shape (entries,)
     value : shape (entries, 4)
-    inner : shape (rows / 4, 6), of a triangular matrix: what couples the four, row by row
+    inner : shape (rows / 4, 6), of a triangular matrix, whose blocks of four on the diagonal are T: what
+        couples the four in T⁻¹, row by row. Its entries are those of T⁻¹ A, an even number for each four
     """
 
     start: Unsigned
@@ -179,7 +180,7 @@ class Work(NamedTuple):
     law_force : [N], shape (slots, laws)
     slack : [N], shape (slots, droppers), what is taken off a dropper that is not as a taut one
     swing : [N], shape (slots, links, 2), what a link's force has more than its tangent
-    tension : [N], shape (slots, gaps), change of tension at the end of the step before
+    tension : [N], shape (gaps, slots), change of tension at the end of the step before
     active : shape (slots, droppers), numbers of those droppers, the first ``active_count`` of the slot
     column, first, width : shape (slots, contacts, room) and (slots, contacts), how the wires give there,
         from which row on, in how many

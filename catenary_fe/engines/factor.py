@@ -42,24 +42,31 @@ def csr_rows(matrix: Any, triangle: str = "") -> CsrRows:
 
 
 def packed_rows(matrix: Any, triangle: str = "") -> PackedRows:
+    """Rows by fours, see :class:`PackedRows`.
+
+    triangle : of a triangular matrix with a diagonal of ones: "lower" or "upper"
+    """
     size = matrix.shape[0]
     assert size % 4 == 0
     row, column, value = _entries(matrix, triangle)
-    inner = np.zeros((size // 4, 6))
+    inner = np.tile(np.eye(4), (size // 4, 1, 1))
     if triangle:
-        place = {(1, 0): 0, (2, 0): 1, (2, 1): 2, (3, 0): 3, (3, 1): 4, (3, 2): 5}
-        if triangle == "upper":
-            place = {(0, 1): 0, (0, 2): 1, (0, 3): 2, (1, 2): 3, (1, 3): 4, (2, 3): 5}
-        table = np.full((4, 4), -1)
-        for (r, c), k in place.items():
-            table[r, c] = k
         same = row // 4 == column // 4
-        inner[row[same] // 4, table[row[same] % 4, column[same] % 4]] = value[same]
+        inner[row[same] // 4, row[same] % 4, column[same] % 4] = value[same]
         row, column, value = row[~same], column[~same], value[~same]
     sign = -1 if triangle == "upper" else 1
     key, entry = np.unique(row // 4 * size + sign * column % size, return_inverse=True)
     values = np.zeros((key.size, 4))
     values[entry, row % 4] = value
-    start = np.concatenate([[0], np.cumsum(np.bincount(key // size, minlength=size // 4))])
-    index = sign * (key % size) % size
-    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values, inner)
+    group, index = key // size, sign * (key % size) % size
+    counts = np.bincount(group, minlength=size // 4)
+    if triangle:
+        inner = np.linalg.inv(inner).astype(float)
+        values = np.einsum("nij,nj->ni", inner[group], values)
+        begin = np.cumsum(counts) - counts
+        odd = begin[counts % 2 == 1]  # one more of zeros, before the others
+        index, values = np.insert(index, odd, index[odd]), np.insert(values, odd, 0.0, axis=0)
+        counts += counts % 2
+    start = np.concatenate([[0], np.cumsum(counts)])
+    within = np.triu_indices(4, 1) if triangle == "upper" else np.tril_indices(4, -1)
+    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values, inner[:, *within])

@@ -21,11 +21,12 @@ from catenary_fe.fe.spring import FIXED
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 _GROUP = 4  # rows that compiled loops take at once
+_FILLED = 8  # of which as many coordinates are a multiple, for loops that take these at once
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Places of a line's coordinates where those of each section are filled up to a multiple of four.
+    """Places of a line's coordinates where those of each section are filled up to a multiple of eight.
 
     place : shape (coordinates,)
     starts : shape (sections + 1,), where each section's begin
@@ -38,7 +39,7 @@ class Rows:
     def of(cls, starts: Integers) -> Rows:
         """From where each section's coordinates begin as they are numbered on the line."""
         counts = np.diff(starts)
-        filled = np.cumsum([0, *(-(-counts // _GROUP) * _GROUP)])
+        filled = np.cumsum([0, *(-(-counts // _FILLED) * _FILLED)])
         return cls(np.concatenate([n + np.arange(m) for n, m in zip(filled, counts, strict=False)]), filled)
 
     @property

@@ -118,7 +118,7 @@ def disturb(rng, setup, start, slots, slackening):
 def take(setup, slots):
     """One step."""
     wires, heads, work, b, g = slots.wires, slots.pantographs, slots.work, setup.scheme.b, setup.scheme.g
-    tension, last = work.tension[0].copy(), [array[0].copy() for array in heads[:4]]
+    tension, last = work.tension[:, 0].copy(), [array[0].copy() for array in heads[:4]]
     slots.advance(1)
     before = [[array[:, 0].copy() for array in wires[:3]], [array[0].copy() for array in heads[:3]]]
     ends = [

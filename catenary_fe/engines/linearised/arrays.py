@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers, Surfaces
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows, Surfaces
 
 
 class ComplianceColumns(NamedTuple):
@@ -21,14 +21,15 @@ class ComplianceColumns(NamedTuple):
 class Operator(NamedTuple):
     """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
 
-    lower, upper : L and Lᵀ without their diagonals of ones; PackedRows for one slot, CsrRows for eight
+    lower, upper : L and Lᵀ without their diagonals of ones
+    stiffness : what of K the line's elements do not have
     """
 
-    lower: Any
-    upper: Any
+    lower: PackedRows
+    upper: PackedRows
     inverse: Floats
-    stiffness: Any
-    rest: Any
+    stiffness: PackedRows
+    rest: PackedRows
     beta: float
 
 
@@ -47,11 +48,15 @@ class SteadyArmBars(NamedTuple):
 
 
 class StretchCoupling(NamedTuple):
-    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`."""
+    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`.
+
+    stiffness : shape (elements, 11), what of the stiffness they have, see ``linearised.stretch``
+    """
 
     at: Integers
     length: Floats
     gap: Integers
+    stiffness: Floats
 
 
 class Line(NamedTuple):

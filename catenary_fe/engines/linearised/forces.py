@@ -371,7 +371,7 @@ def record(
     for s in range(line.tensions.size):
         i = line.tensions[s]
         tension = wires.q[i, c] + scheme.b * wires.x[i, c]
-        work.tension[c, s] = tension
+        work.tension[s, c] = tension
         if abs(tension) > to.change[c, s]:
             to.change[c, s], to.changed[c, s] = abs(tension), n
     if to.every > 0 and n % to.every == 0:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from catenary_fe.engines import arrays as shared_arrays
-from catenary_fe.engines import contact_solver, generalized_alpha, kernels, pantograph_laws
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels, lanes, pantograph_laws
 from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Records, Wires, Work
 from catenary_fe.engines.compiled import compiled, kept, stamp
 from catenary_fe.engines.contact_solver import (
@@ -25,7 +25,7 @@ from catenary_fe.engines.contact_solver import (
     weigh_contact,
 )
 from catenary_fe.engines.generalized_alpha import Scheme, predict
-from catenary_fe.engines.kernels import add_loads, copy, take_one
+from catenary_fe.engines.kernels import add_loads, copy, take
 from catenary_fe.engines.nonlinear import arrays, cables, energies, forces
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
 from catenary_fe.engines.nonlinear.cables import take_cables
@@ -109,9 +109,9 @@ def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -
     for i in range(system.dof.size):
         if system.dof[i] >= 0:
             residual[system.dof[i]] += motion.inner[i]
-    take_one(system.stiffness, motion.q, residual)
-    take_one(system.mass, flat.x, residual)
-    take_one(system.damping, motion.v, residual)
+    take(system.stiffness, motion.q, residual)
+    take(system.mass, flat.x, residual)
+    take(system.damping, motion.v, residual)
 
 
 @compiled
@@ -280,6 +280,7 @@ advance = _loop(
         contact_solver,
         pantograph_laws,
         kernels,
+        lanes,
         arrays,
         cables,
         energies,
