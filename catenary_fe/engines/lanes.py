@@ -11,8 +11,19 @@ import operator
 from importlib import import_module
 from typing import Any
 
-from catenary_fe.engines.arrays import SLOTS
+import numpy as np
+
+from catenary_fe.engines.arrays import SLOTS, Floats
 from catenary_fe.engines.compiled import numba
+
+
+def aligned(shape: tuple[int, ...]) -> Floats:
+    """Zeros, of which no eight are in two lines of the processor's cache."""
+    size = int(np.prod(shape))
+    room = np.zeros(size + SLOTS)
+    first = -room.ctypes.data // room.itemsize % SLOTS
+    return room[first : first + size].reshape(shape)
+
 
 # what these are where nothing is compiled, as in mutation testing
 

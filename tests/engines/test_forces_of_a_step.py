@@ -137,7 +137,7 @@ def travel(setup, pantographs, places, every, slackening=1.0):
     sizes = Sizes(
         pantographs=len(places) + 1, contacts=9, coordinates=6, steps=STEPS, shapes=STEPS + 1, points=3
     )
-    slots, rng, steps = Batch(setup, sizes, 1, every), np.random.default_rng(4), []
+    slots, rng, steps = Batch(setup, sizes, 1, every), np.random.default_rng(5), []
     slots.load(0, start, STEPS)
     for _ in range(STEPS):
         disturb(rng, setup, start, slots, slackening)

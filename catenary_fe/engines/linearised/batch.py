@@ -24,6 +24,7 @@ from catenary_fe.engines.contact_solver import advance_heads
 from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.history import History
 from catenary_fe.engines.kernels import add_loads, begin, lower, upper
+from catenary_fe.engines.lanes import aligned
 from catenary_fe.engines.linearised import arrays, forces, stretch
 from catenary_fe.engines.linearised.arrays import Line, Near, Operator
 from catenary_fe.engines.linearised.forces import record, solve_contacts
@@ -62,7 +63,7 @@ class Batch:
         self._computed = Computed(setup.model.section_starts.size - 1)
         self._operator = setup.operator
         self.signals = np.zeros((0, sizes.steps + 2)) if signals is None else signals
-        self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
+        self.wires = Wires(*(aligned((n, slots)) for _ in range(5)))
         self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal, setup.base_line)
         width = 2 * line.contact_compliance.value.shape[1]
         self.work = Work(
@@ -70,7 +71,7 @@ class Batch:
             law_force=np.zeros((slots, sizes.laws)),
             slack=np.zeros((slots, line.k.size)),
             arm_force=np.zeros((slots, line.links.k.size, 2)),
-            tension=np.zeros((line.tensions.size, slots)),
+            tension=aligned((line.tensions.size, slots)),
             active=np.zeros((slots, line.k.size), dtype=np.int64),
             active_count=np.zeros(slots, dtype=np.int64),
             column=np.zeros((slots, j, width)),
