@@ -27,13 +27,22 @@ class PackedRows(NamedTuple):
 
     column : shape (entries,)
     value : shape (entries, 4)
-    inner : shape (rows / 4, 6), of a triangular matrix, whose blocks of four on the diagonal are T: what
-        couples the four in T⁻¹, row by row. Its entries are those of T⁻¹ A, an even number for each four
     """
 
     start: Unsigned
     column: Unsigned
     value: Floats
+
+
+class PackedFactor(NamedTuple):
+    """A symmetric matrix (I + V)ᵀ S⁻¹ (I + V), S in blocks of four: no four rows wait for one another.
+
+    lower, upper : Vᵀ and V, which have an even number of entries for each four rows
+    inner : shape (rows / 4, 10), what is on and above the diagonals of S, block by block
+    """
+
+    lower: PackedRows
+    upper: PackedRows
     inner: Floats
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import CsrRows, PackedRows
+from catenary_fe.engines.arrays import CsrRows, PackedFactor, PackedRows
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,49 +24,55 @@ def factorise(matrix: Any) -> Any:
     return factor
 
 
-def _entries(matrix: Any, triangle: str) -> tuple[Integers, Integers, Floats]:
-    """Rows, columns, values by rows, the columns in the order in which a solve comes to them."""
+def csr_rows(matrix: Any) -> CsrRows:
     coo = matrix.tocoo()
-    row, column, value = coo.row.astype(np.int64), coo.col.astype(np.int64), coo.data
-    if triangle:
-        keep = row != column
-        row, column, value = row[keep], column[keep], value[keep]
-    order = np.lexsort((-column if triangle == "upper" else column, row))
-    return row[order], column[order], value[order]
-
-
-def csr_rows(matrix: Any, triangle: str = "") -> CsrRows:
-    row, column, value = _entries(matrix, triangle)
+    row, column, value = coo.row.astype(np.int64), coo.col, coo.data
+    order = np.lexsort((column, row))
     start = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=matrix.shape[0]))])
-    return CsrRows(start.astype(np.uint32), column.astype(np.uint32), np.ascontiguousarray(value))
+    return CsrRows(start.astype(np.uint32), column[order].astype(np.uint32), value[order].astype(float))
 
 
-def packed_rows(matrix: Any, triangle: str = "") -> PackedRows:
-    """Rows by fours, see :class:`PackedRows`.
+def packed_rows(matrix: Any, *, backward: bool = False, even: bool = False) -> PackedRows:
+    """Rows by fours.
 
-    triangle : of a triangular matrix with a diagonal of ones: "lower" or "upper"
+    backward : columns from the last one to the first, in which an upward solve comes to them
+    even : an even number of entries for each four rows; what is missing are zeros, before the others
     """
     size = matrix.shape[0]
     assert size % 4 == 0
-    row, column, value = _entries(matrix, triangle)
-    inner = np.tile(np.eye(4), (size // 4, 1, 1))
-    if triangle:
-        same = row // 4 == column // 4
-        inner[row[same] // 4, row[same] % 4, column[same] % 4] = value[same]
-        row, column, value = row[~same], column[~same], value[~same]
-    sign = -1 if triangle == "upper" else 1
+    coo, sign = matrix.tocoo(), -1 if backward else 1
+    row, column = coo.row.astype(np.int64), coo.col.astype(np.int64)
     key, entry = np.unique(row // 4 * size + sign * column % size, return_inverse=True)
     values = np.zeros((key.size, 4))
-    values[entry, row % 4] = value
-    group, index = key // size, sign * (key % size) % size
-    counts = np.bincount(group, minlength=size // 4)
-    if triangle:
-        inner = np.linalg.inv(inner).astype(float)
-        values = np.einsum("nij,nj->ni", inner[group], values)
-        begin = np.cumsum(counts) - counts
-        odd = begin[counts % 2 == 1]  # one more of zeros, before the others
+    values[entry, row % 4] = coo.data
+    index = sign * (key % size) % size
+    counts = np.bincount(key // size, minlength=size // 4)
+    if even:
+        odd = (np.cumsum(counts) - counts)[counts % 2 == 1]
         index, values = np.insert(index, odd, index[odd]), np.insert(values, odd, 0.0, axis=0)
         counts += counts % 2
     start = np.concatenate([[0], np.cumsum(counts)])
-    within = np.triu_indices(4, 1) if triangle == "upper" else np.tril_indices(4, -1)
-    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values, inner[:, *within])
+    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values)
+
+
+def packed_factor(factor: Any) -> PackedFactor:
+    """A symmetric matrix as (I + V)ᵀ S⁻¹ (I + V), see :class:`PackedFactor`."""
+    from scipy.sparse import bsr_matrix
+
+    upper = factor.L.T.tocoo()
+    row, column, size = upper.row.astype(np.int64), upper.col.astype(np.int64), upper.shape[0]
+    same = row // 4 == column // 4
+    blocks = np.zeros((size // 4, 4, 4))  # of Lᵀ on its diagonal
+    blocks[row[same] // 4, row[same] % 4, column[same] % 4] = upper.data[same]
+    upper.data[same] = 0.0
+    upper.eliminate_zeros()
+    inverse = np.linalg.inv(blocks).astype(float)
+    groups = np.arange(size // 4 + 1)
+    V = bsr_matrix((inverse, groups[:-1], groups), shape=upper.shape).tocsr() @ upper.tocsr()
+    scaled = inverse / factor.U.diagonal().reshape(-1, 1, 4)
+    S = np.einsum("nij,nkj->nik", scaled, inverse)
+    return PackedFactor(
+        lower=packed_rows(V.T, even=True),
+        upper=packed_rows(V, backward=True, even=True),
+        inner=S[:, *np.triu_indices(4)],
+    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from catenary_fe.engines.arrays import CsrRows, Floats, PackedRows
+from catenary_fe.engines.arrays import CsrRows, Floats, PackedFactor, PackedRows
 from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.lanes import load, number, store
 
@@ -68,41 +68,35 @@ def take_rows(A: PackedRows, u: Floats, k: int, a: Any, b: Any, c: Any, d: Any) 
 
 
 @compiled
-def lower(L: PackedRows, x: Floats, first: int, last: int) -> None:
-    """Solve L y = x in place; for the groups of four rows from ``first`` to before ``last``."""
+def lower(A: PackedFactor, x: Floats, first: int, last: int) -> None:
+    """Solve (I + V)ᵀ z = x in place; for the groups of four rows from ``first`` to before ``last``."""
     for k in range(first, last):
-        i, t = 4 * k, L.inner[k]
-        a, b, c, d = load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3)
-        d = d + t[3] * a + t[4] * b + t[5] * c
-        c = c + t[1] * a + t[2] * b
-        b = b + t[0] * a
-        _solve_rows(L, x, k, a, b, c, d)
+        i = 4 * k
+        _solve_rows(A.lower, x, k, load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3))
 
 
 @compiled
-def upper(U: PackedRows, inverse: Floats, x: Floats, first: int, last: int) -> None:
-    """Solve diag(1 / inverse) Lᵀ y = x in place; for the groups from ``last`` - 1 down to ``first``."""
-    for n in range(last - first):
-        k = last - 1 - n
-        i, t = 4 * k, U.inner[k]
-        a, b = inverse[i] * load(x, i), inverse[i + 1] * load(x, i + 1)
-        c, d = inverse[i + 2] * load(x, i + 2), inverse[i + 3] * load(x, i + 3)
-        a = a + t[0] * b + t[1] * c + t[2] * d
-        b = b + t[3] * c + t[4] * d
-        c = c + t[5] * d
-        _solve_rows(U, x, k, a, b, c, d)
+def upper(A: PackedFactor, x: Floats, first: int, last: int) -> None:
+    """Solve (I + V) y = S x in place; for the groups from ``last`` - 1 down to ``first``."""
+    for k in range(last - 1, first - 1, -1):
+        i, s = 4 * k, A.inner[k]
+        p, q, r, t = load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3)
+        a = s[0] * p + s[1] * q + s[2] * r + s[3] * t
+        b = s[1] * p + s[4] * q + s[5] * r + s[6] * t
+        c = s[2] * p + s[5] * q + s[7] * r + s[8] * t
+        d = s[3] * p + s[6] * q + s[8] * r + s[9] * t
+        _solve_rows(A.upper, x, k, a, b, c, d)
 
 
 @compiled
-def _solve_rows(L: PackedRows, x: Floats, k: int, a: Any, b: Any, c: Any, d: Any) -> None:
-    """Four rows less what is solved already, in two sums: one waits for the other half as often."""
+def _solve_rows(V: PackedRows, x: Floats, k: int, a: Any, b: Any, c: Any, d: Any) -> None:
+    """Four rows less what is solved already, in two sums: each waits for the last of it half as often."""
     i, nothing = 4 * k, number(x, 0.0)
     e, f, g, h = nothing, nothing, nothing, nothing
-    for n in range((L.start[k + 1] - L.start[k]) // 2):
-        m = L.start[k] + 2 * n
-        p, r = load(x, L.column[m]), L.value[m]
+    for m in range(V.start[k], V.start[k + 1], 2):
+        p, r = load(x, V.column[m]), V.value[m]
         a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
-        p, r = load(x, L.column[m + 1]), L.value[m + 1]
+        p, r = load(x, V.column[m + 1]), V.value[m + 1]
         e, f, g, h = e + r[0] * p, f + r[1] * p, g + r[2] * p, h + r[3] * p
     store(x, i, a - e)
     store(x, i + 1, b - f)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import CsrRows, PackedRows
+from catenary_fe.engines.arrays import CsrRows, PackedFactor, PackedRows
 from catenary_fe.fe.contact import Contact, ContactPath
 from catenary_fe.fe.spring import FIXED
 
@@ -126,11 +126,17 @@ def packed_part(rows: PackedRows, first: int, end: int) -> PackedRows:
     """Rows of some sections alone, as rows of their own."""
     if first == 0 and end == _GROUP * (rows.start.size - 1):
         return rows  # in each block of steps of a run on one section
-    groups = slice(first // _GROUP, end // _GROUP)
-    start = rows.start[groups.start : groups.stop + 1]
+    start = rows.start[first // _GROUP : end // _GROUP + 1]
     entries = slice(int(start[0]), int(start[-1]))
-    return PackedRows(
-        start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries], rows.inner[groups]
+    return PackedRows(start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries])
+
+
+def factor_part(factor: PackedFactor, first: int, end: int) -> PackedFactor:
+    """Likewise of a factor."""
+    return PackedFactor(
+        packed_part(factor.lower, first, end),
+        packed_part(factor.upper, first, end),
+        factor.inner[first // _GROUP : end // _GROUP],
     )
 
 

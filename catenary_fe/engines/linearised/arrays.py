@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows, Surfaces
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedFactor, PackedRows, Surfaces
 
 
 class ComplianceColumns(NamedTuple):
@@ -19,15 +19,12 @@ class ComplianceColumns(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
+    """Factor of the step's matrix, stiffness K, damping β K + rest.
 
-    lower, upper : L and Lᵀ without their diagonals of ones
     stiffness : what of K the line's elements do not have
     """
 
-    lower: PackedRows
-    upper: PackedRows
-    inverse: Floats
+    factor: PackedFactor
     stiffness: PackedRows
     rest: PackedRows
     beta: float

@@ -212,8 +212,8 @@ def _loop(sources: str) -> Any:
             for c in range(pantographs.step.size):
                 add_loads(line.patterns, signals[:, pantographs.step[c] + 1], wires.x[:, c])
             take_elements(line, rows.q, tension, rows.w, rows.x)
-            lower(operator.lower, rows.x, 0, groups)
-            upper(operator.upper, operator.inverse, rows.x, 0, groups)
+            lower(operator.factor, rows.x, 0, groups)
+            upper(operator.factor, rows.x, 0, groups)
             _finish(scheme, line, wires, heads, pantographs, work, near, records)
         return len(sources)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import Records, Wires, Work
 from catenary_fe.engines.linearised.arrays import ComplianceColumns, Line, Operator, StretchCoupling
 from catenary_fe.engines.linearised.setup import Setup, Slices
-from catenary_fe.engines.sections import csr_part, moved, packed_part
+from catenary_fe.engines.sections import csr_part, factor_part, moved, packed_part
 
 Integers = NDArray[np.int64]
 
@@ -32,9 +32,7 @@ class Leg:
         first, end = at.rows.start, at.rows.stop
         whole = setup.operator
         operator = whole._replace(
-            lower=packed_part(whole.lower, first, end),
-            upper=packed_part(whole.upper, first, end),
-            inverse=whole.inverse[at.rows],
+            factor=factor_part(whole.factor, first, end),
             stiffness=packed_part(whole.stiffness, first, end),
             rest=packed_part(whole.rest, first, end),
         )

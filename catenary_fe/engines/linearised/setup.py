@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
+from catenary_fe.engines.factor import csr_rows, factorise, packed_factor, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
 from catenary_fe.engines.linearised.arrays import (
     ComplianceColumns,
@@ -100,9 +100,7 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
         nominal=nominal,
         base_line=system.base_line,
         operator=Operator(
-            lower=packed_rows(factor.L, "lower"),
-            upper=packed_rows(factor.L.T, "upper"),
-            inverse=1 / factor.U.diagonal(),
+            factor=packed_factor(factor),
             stiffness=packed_rows(others),
             rest=packed_rows(rest),
             beta=beta,

@@ -88,7 +88,7 @@ def local_compliance(factor: Factor, at: Integers, weights: Floats, column: Floa
 
     Written to ``column``; returns from which coordinate on, and in how many.
     """
-    groups = factor.inverse.size // 4
+    groups = factor.window.size // 4
     low, high = groups, -1
     for m in range(at.size):
         if at[m] >= 0:
@@ -100,8 +100,8 @@ def local_compliance(factor: Factor, at: Integers, weights: Floats, column: Floa
     for m in range(at.size):
         if at[m] >= 0:
             window[at[m]] += weights[m]
-    lower(factor.lower, window, low, last)  # what is outside is zero
-    upper(factor.upper, factor.inverse, window, first, last)
+    lower(factor.packed, window, low, last)  # what is outside is zero
+    upper(factor.packed, window, first, last)
     for i in range(begin, end):
         column[i - begin] = window[i]
         window[i] = 0.0
@@ -135,5 +135,5 @@ def woodbury_update(factor: Factor, slack: Slack, x: Floats) -> None:
 def solve(factor: Factor, x: Floats) -> None:
     """Solve with the step's matrix at rest, in place."""
     groups = x.size // 4
-    lower(factor.lower, x, 0, groups)
-    upper(factor.upper, factor.inverse, x, 0, groups)
+    lower(factor.packed, x, 0, groups)
+    upper(factor.packed, x, 0, groups)
