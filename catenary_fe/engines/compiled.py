@@ -54,7 +54,7 @@ def _compiled(function: _Function, keep: bool) -> _Function:
     # time to compile, and in contacts nine tenths of that to run
     options["_nrt"] = False
     made = numba.njit(fastmath={"contract"}, error_model="numpy", **options)(function)
-    if keep:
+    if keep and made is not function:  # numba may be told to compile nothing
         _keep(made)
     return cast(_Function, made)
 
