@@ -27,12 +27,22 @@ class PackedRows(NamedTuple):
 
     column : shape (entries,)
     value : shape (entries, 4)
-    inner : shape (rows / 4, 6), of a triangular matrix: what couples the four, row by row
     """
 
     start: Unsigned
     column: Unsigned
     value: Floats
+
+
+class PackedFactor(NamedTuple):
+    """A symmetric matrix (I + V)ᵀ S⁻¹ (I + V), S in blocks of four: no four rows wait for one another.
+
+    lower, upper : Vᵀ and V, which have an even number of entries for each four rows
+    inner : shape (rows / 4, 10), what is on and above the diagonals of S, block by block
+    """
+
+    lower: PackedRows
+    upper: PackedRows
     inner: Floats
 
 
@@ -179,7 +189,7 @@ class Work(NamedTuple):
     law_force : [N], shape (slots, laws)
     slack : [N], shape (slots, droppers), what is taken off a dropper that is not as a taut one
     swing : [N], shape (slots, links, 2), what a link's force has more than its tangent
-    tension : [N], shape (slots, gaps), change of tension at the end of the step before
+    tension : [N], shape (gaps, slots), change of tension at the end of the step before
     active : shape (slots, droppers), numbers of those droppers, the first ``active_count`` of the slot
     column, first, width : shape (slots, contacts, room) and (slots, contacts), how the wires give there,
         from which row on, in how many

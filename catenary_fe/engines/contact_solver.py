@@ -180,7 +180,7 @@ def update_contact(
     c: int,
     j: int,
 ) -> float:
-    """Bring one contact's force to its law; returns the change [N]."""
+    """Bring one contact's force to its law, and the head; returns the change [N], which the wires await."""
     if not work.on[c, j]:
         return 0.0
     p = heads.owner[c, j]
@@ -214,11 +214,16 @@ def update_contact(
         force = solve_one_way(spring + cs * old, damper + cd * old, cs, cd)
     change = force - old
     work.force[c, j] = force
-    for i in range(work.width[c, j]):
-        wires.x[first + i, c] += change * column[i]
     for s in range(pantographs.x.shape[2]):
         pantographs.x[c, p, s] -= change * work.head_compliance[c, j, s]
-    return float(abs(change))
+    return float(change)
+
+
+@compiled
+def move_wires(wires: Wires, c: int, first: int, column: Floats, change: float) -> None:
+    """What a force's change makes of the accelerations, by its column of the inverse from a row on."""
+    for i in range(column.size):
+        wires.x[first + i, c] += change * column[i]
 
 
 @compiled

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import CsrRows, PackedRows
+from catenary_fe.engines.arrays import CsrRows, PackedFactor, PackedRows
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,47 +24,56 @@ def factorise(matrix: Any) -> Any:
     return factor
 
 
-def _entries(matrix: Any, triangle: str) -> tuple[Integers, Integers, Floats]:
-    """Rows, columns, values by rows, the columns in the order in which a solve comes to them."""
+def csr_rows(matrix: Any) -> CsrRows:
     rows = matrix.tocsc().tocsr()  # so the columns of each are in order
-    row = np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
-    column, value = rows.indices.astype(np.int64), rows.data
-    if triangle == "upper":
-        turned = (rows.indptr[:-1] + rows.indptr[1:])[row] - 1 - np.arange(row.size)
-        column, value = column[turned], value[turned]
-    kept = (row != column) | (not triangle)
-    return row[kept], column[kept], value[kept]
+    return CsrRows(rows.indptr.astype(np.uint32), rows.indices.astype(np.uint32), rows.data.astype(float))
 
 
-def csr_rows(matrix: Any, triangle: str = "") -> CsrRows:
-    row, column, value = _entries(matrix, triangle)
-    start = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=matrix.shape[0]))])
-    return CsrRows(start.astype(np.uint32), column.astype(np.uint32), np.ascontiguousarray(value))
+def packed_rows(matrix: Any, *, backward: bool = False, even: bool = False) -> PackedRows:
+    """Rows by fours.
 
-
-def packed_rows(matrix: Any, triangle: str = "") -> PackedRows:
+    backward : columns from the last one to the first, in which an upward solve comes to them
+    even : an even number of entries for each four rows; what is missing are zeros, before the others
+    """
     size = matrix.shape[0]
     assert size % 4 == 0
-    row, column, value = _entries(matrix, triangle)
-    inner = np.zeros((size // 4, 6))
-    if triangle:
-        place = {(1, 0): 0, (2, 0): 1, (2, 1): 2, (3, 0): 3, (3, 1): 4, (3, 2): 5}
-        if triangle == "upper":
-            place = {(0, 1): 0, (0, 2): 1, (0, 3): 2, (1, 2): 3, (1, 3): 4, (2, 3): 5}
-        table = np.full((4, 4), -1)
-        for (r, c), k in place.items():
-            table[r, c] = k
-        same = row // 4 == column // 4
-        inner[row[same] // 4, table[row[same] % 4, column[same] % 4]] = value[same]
-        row, column, value = row[~same], column[~same], value[~same]
-    sign = -1 if triangle == "upper" else 1
-    key = row // 4 * size + sign * column % size
+    rows, sign = matrix.tocsc().tocsr(), -1 if backward else 1  # so the columns of each are in order
+    row = np.repeat(np.arange(size), np.diff(rows.indptr))
+    key = row // 4 * size + sign * rows.indices.astype(np.int64) % size
     order = np.argsort(key, kind="stable")  # four rows in order: quicker than np.unique
     first = np.diff(key[order], prepend=-1) > 0
     entry = np.empty_like(order)
     entry[order], key = np.cumsum(first) - 1, key[order][first]
     values = np.zeros((key.size, 4))
-    values[entry, row % 4] = value
-    start = np.concatenate([[0], np.cumsum(np.bincount(key // size, minlength=size // 4))])
+    values[entry, row % 4] = rows.data
     index = sign * (key % size) % size
-    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values, inner)
+    counts = np.bincount(key // size, minlength=size // 4)
+    if even:
+        odd = (np.cumsum(counts) - counts)[counts % 2 == 1]
+        index, values = np.insert(index, odd, index[odd]), np.insert(values, odd, 0.0, axis=0)
+        counts += counts % 2
+    start = np.concatenate([[0], np.cumsum(counts)])
+    return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values)
+
+
+def packed_factor(factor: Any) -> PackedFactor:
+    """A symmetric matrix as (I + V)ᵀ S⁻¹ (I + V), see :class:`PackedFactor`."""
+    from scipy.sparse import bsr_matrix
+
+    upper = factor.L.T.tocoo()
+    row, column, size = upper.row.astype(np.int64), upper.col.astype(np.int64), upper.shape[0]
+    same = row // 4 == column // 4
+    blocks = np.zeros((size // 4, 4, 4))  # of Lᵀ on its diagonal
+    blocks[row[same] // 4, row[same] % 4, column[same] % 4] = upper.data[same]
+    upper.data[same] = 0.0
+    upper.eliminate_zeros()
+    inverse = np.linalg.inv(blocks).astype(float)
+    groups = np.arange(size // 4 + 1)
+    V = bsr_matrix((inverse, groups[:-1], groups), shape=upper.shape).tocsr() @ upper.tocsr()
+    scaled = inverse / factor.U.diagonal().reshape(-1, 1, 4)
+    S = np.einsum("nij,nkj->nik", scaled, inverse)
+    return PackedFactor(
+        lower=packed_rows(V.T, even=True),
+        upper=packed_rows(V, backward=True, even=True),
+        inner=S[:, *np.triu_indices(4)],
+    )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from catenary_fe.engines.arrays import Floats, Wires
+from catenary_fe.engines.arrays import SLOTS, Floats, Wires
 from catenary_fe.engines.compiled import compiled
+from catenary_fe.engines.lanes import load_eight, store_eight
 from catenary_fe.engines.settings import TimeSettings
 
 
@@ -68,12 +69,19 @@ def advance(scheme: Scheme, q: Any, v: Any, c: Any, x: Any) -> tuple[Any, Any, A
 
 @compiled
 def predict(scheme: Scheme, beta: float, wires: Wires) -> None:
-    """State of the next step in place; on flat arrays."""
-    q, v, c, x, w = wires
-    for i in range(x.size):  # two loops: the compiler cannot tell more arrays apart
-        q[i], v[i], c[i] = advance(scheme, q[i], v[i], c[i], x[i])
-    for i in range(x.size):
-        w[i] = q[i] + beta * v[i]
+    """State of the next step in place; of any number of coordinates and slots that eight divides."""
+    for i in range(wires.x.size // SLOTS):
+        q, v, c = advance(
+            scheme,
+            load_eight(wires.q, i),
+            load_eight(wires.v, i),
+            load_eight(wires.c, i),
+            load_eight(wires.x, i),
+        )
+        store_eight(wires.q, i, q)
+        store_eight(wires.v, i, v)
+        store_eight(wires.c, i, c)
+        store_eight(wires.w, i, q + beta * v)
 
 
 def at_start(scheme: Scheme, q: Floats, v: Floats, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -1,13 +1,24 @@
 """Work of a linearised run's step that concerns all coordinates: residual, solution, prediction of the next.
 
 Generalised-α: with x the accelerations at the step's end, q = q* + b x and v = v* + g x, where q* and v* are
-known, and (M + g D + b K) x = f - D v* - K q*. Functions come for one slot and for ``SLOTS`` of them.
+known, and (M + g D + b K) x = f - D v* - K q*. Arrays of coordinates have the shape (size,) for one slot, and
+(size, SLOTS) for eight.
 """
 
 from __future__ import annotations
 
-from catenary_fe.engines.arrays import CsrRows, Floats, PackedRows
+from typing import Any
+
+from catenary_fe.engines.arrays import CsrRows, Floats, PackedFactor, PackedRows
 from catenary_fe.engines.compiled import compiled
+from catenary_fe.engines.lanes import load, number, store
+
+
+@compiled
+def copy(values: Floats, x: Floats) -> None:
+    """x = values; as a slice it would make room for another copy, should the two overlap."""
+    for i in range(x.size):
+        x[i] = values[i]
 
 
 @compiled
@@ -21,88 +32,73 @@ def add_loads(rows: CsrRows, signals: Floats, x: Floats) -> None:
 
 
 @compiled
-def take_one(A: PackedRows, u: Floats, x: Floats) -> None:
+def take(A: PackedRows, u: Floats, x: Floats) -> None:
     """x -= A u"""
-    start, index, value, _ = A
-    for k in range(start.size - 1):
+    for k in range(A.start.size - 1):
         i = 4 * k
-        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
-        for m in range(start[k], start[k + 1]):
-            p, r = u[index[m]], value[m]
-            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
-        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
+        a, b, c, d = take_rows(A, u, k, load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3))
+        store(x, i, a)
+        store(x, i + 1, b)
+        store(x, i + 2, c)
+        store(x, i + 3, d)
 
 
 @compiled
-def lower_one(L: PackedRows, x: Floats, first: int, last: int) -> None:
-    """Solve L y = x in place; for the groups of four rows from ``first`` to before ``last``."""
-    start, index, value, inner = L
+def begin(f: Floats, A: PackedRows, u: Floats, B: PackedRows, v: Floats, x: Floats) -> None:
+    """x = f - A u - B v, with the same f, shape (size,), in all slots"""
+    for k in range(A.start.size - 1):
+        i = 4 * k
+        a, b = number(x, f[i]), number(x, f[i + 1])
+        c, d = number(x, f[i + 2]), number(x, f[i + 3])
+        a, b, c, d = take_rows(A, u, k, a, b, c, d)
+        a, b, c, d = take_rows(B, v, k, a, b, c, d)
+        store(x, i, a)
+        store(x, i + 1, b)
+        store(x, i + 2, c)
+        store(x, i + 3, d)
+
+
+@compiled
+def take_rows(A: PackedRows, u: Floats, k: int, a: Any, b: Any, c: Any, d: Any) -> tuple[Any, Any, Any, Any]:
+    """What four rows leave of values: less A u"""
+    for m in range(A.start[k], A.start[k + 1]):
+        p, r = load(u, A.column[m]), A.value[m]
+        a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
+    return a, b, c, d
+
+
+@compiled
+def lower(A: PackedFactor, x: Floats, first: int, last: int) -> None:
+    """Solve (I + V)ᵀ z = x in place; for the groups of four rows from ``first`` to before ``last``."""
     for k in range(first, last):
         i = 4 * k
-        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
-        for m in range(start[k], start[k + 1]):
-            p, r = x[index[m]], value[m]
-            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
-        t = inner[k]
-        b -= t[0] * a
-        c -= t[1] * a + t[2] * b
-        d -= t[3] * a + t[4] * b + t[5] * c
-        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
+        _solve_rows(A.lower, x, k, load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3))
 
 
 @compiled
-def upper_one(U: PackedRows, inverse: Floats, x: Floats, first: int, last: int) -> None:
-    """Solve diag(1 / inverse) Lᵀ y = x in place; for the groups from ``last`` - 1 down to ``first``."""
-    start, index, value, inner = U
-    for n in range(last - first):
-        k = last - 1 - n
-        i = 4 * k
-        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
-        a, b, c, d = a * inverse[i], b * inverse[i + 1], c * inverse[i + 2], d * inverse[i + 3]
-        for m in range(start[k], start[k + 1]):
-            p, r = x[index[m]], value[m]
-            a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
-        t = inner[k]
-        c -= t[5] * d
-        b -= t[4] * d + t[3] * c
-        a -= t[2] * d + t[1] * c + t[0] * b
-        x[i], x[i + 1], x[i + 2], x[i + 3] = a, b, c, d
-
-
-# eight slots are written out: so the compiler makes vectors of them
+def upper(A: PackedFactor, x: Floats, first: int, last: int) -> None:
+    """Solve (I + V) y = S x in place; for the groups from ``last`` - 1 down to ``first``."""
+    for k in range(last - 1, first - 1, -1):
+        i, s = 4 * k, A.inner[k]
+        p, q, r, t = load(x, i), load(x, i + 1), load(x, i + 2), load(x, i + 3)
+        a = s[0] * p + s[1] * q + s[2] * r + s[3] * t
+        b = s[1] * p + s[4] * q + s[5] * r + s[6] * t
+        c = s[2] * p + s[5] * q + s[7] * r + s[8] * t
+        d = s[3] * p + s[6] * q + s[8] * r + s[9] * t
+        _solve_rows(A.upper, x, k, a, b, c, d)
 
 
 @compiled
-def take_eight(A: CsrRows, u: Floats, x: Floats) -> None:
-    """x -= A u"""
-    start, index, value = A
-    for i in range(x.shape[0]):
-        r = x[i]
-        a, b, c, d, e, f, g, h = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7]
-        for m in range(start[i], start[i + 1]):
-            k, p = value[m], u[index[m]]
-            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
-            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
-        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
-
-
-@compiled
-def lower_eight(L: CsrRows, x: Floats) -> None:
-    """Solve L y = x in place."""
-    take_eight(L, x, x)  # rows that come before are solved already
-
-
-@compiled
-def upper_eight(U: CsrRows, inverse: Floats, x: Floats) -> None:
-    """Solve diag(1 / inverse) Lᵀ y = x in place."""
-    start, index, value = U
-    for n in range(x.shape[0]):
-        i = x.shape[0] - 1 - n
-        r, v = x[i], inverse[i]
-        a, b, c, d = v * r[0], v * r[1], v * r[2], v * r[3]
-        e, f, g, h = v * r[4], v * r[5], v * r[6], v * r[7]
-        for m in range(start[i], start[i + 1]):
-            k, p = value[m], x[index[m]]
-            a, b, c, d = a - k * p[0], b - k * p[1], c - k * p[2], d - k * p[3]
-            e, f, g, h = e - k * p[4], f - k * p[5], g - k * p[6], h - k * p[7]
-        r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = a, b, c, d, e, f, g, h
+def _solve_rows(V: PackedRows, x: Floats, k: int, a: Any, b: Any, c: Any, d: Any) -> None:
+    """Four rows less what is solved already, in two sums: each waits for the last of it half as often."""
+    i, nothing = 4 * k, number(x, 0.0)
+    e, f, g, h = nothing, nothing, nothing, nothing
+    for m in range(V.start[k], V.start[k + 1], 2):
+        p, r = load(x, V.column[m]), V.value[m]
+        a, b, c, d = a - r[0] * p, b - r[1] * p, c - r[2] * p, d - r[3] * p
+        p, r = load(x, V.column[m + 1]), V.value[m + 1]
+        e, f, g, h = e + r[0] * p, f + r[1] * p, g + r[2] * p, h + r[3] * p
+    store(x, i, a - e)
+    store(x, i + 1, b - f)
+    store(x, i + 2, c - g)
+    store(x, i + 3, d - h)

@@ -14,18 +14,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import CsrRows, PackedRows
+from catenary_fe.engines.arrays import CsrRows, PackedFactor, PackedRows
 from catenary_fe.fe.contact import Contact, ContactPath
 from catenary_fe.fe.spring import FIXED
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 _GROUP = 4  # rows that compiled loops take at once
+_FILLED = 8  # of which as many coordinates are a multiple, for loops that take these at once
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Places of a line's coordinates where those of each section are filled up to a multiple of four.
+    """Places of a line's coordinates where those of each section are filled up to a multiple of eight.
 
     place : shape (coordinates,)
     starts : shape (sections + 1,), where each section's begin
@@ -38,7 +39,7 @@ class Rows:
     def of(cls, starts: Integers) -> Rows:
         """From where each section's coordinates begin as they are numbered on the line."""
         counts = np.diff(starts)
-        filled = np.cumsum([0, *(-(-counts // _GROUP) * _GROUP)])
+        filled = np.cumsum([0, *(-(-counts // _FILLED) * _FILLED)])
         return cls(np.concatenate([n + np.arange(m) for n, m in zip(filled, counts, strict=False)]), filled)
 
     @property
@@ -126,11 +127,17 @@ def packed_part(rows: PackedRows, first: int, end: int) -> PackedRows:
     """Rows of some sections alone, as rows of their own."""
     if first == 0 and end == _GROUP * (rows.start.size - 1):
         return rows  # in each block of steps of a run on one section
-    groups = slice(first // _GROUP, end // _GROUP)
-    start = rows.start[groups.start : groups.stop + 1]
+    start = rows.start[first // _GROUP : end // _GROUP + 1]
     entries = slice(int(start[0]), int(start[-1]))
-    return PackedRows(
-        start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries], rows.inner[groups]
+    return PackedRows(start - start[0], rows.column[entries] - np.uint32(first), rows.value[entries])
+
+
+def factor_part(factor: PackedFactor, first: int, end: int) -> PackedFactor:
+    """Likewise of a factor."""
+    return PackedFactor(
+        packed_part(factor.lower, first, end),
+        packed_part(factor.upper, first, end),
+        factor.inner[first // _GROUP : end // _GROUP],
     )
 
 

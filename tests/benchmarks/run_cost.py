@@ -18,7 +18,7 @@ import numpy as np
 
 import catenary_fe as cf
 from catenary_fe.engines.base import RunCase
-from catenary_fe.engines.kernels import take_one
+from catenary_fe.engines.kernels import take
 from catenary_fe.engines.nonlinear.cables import take_cables
 from catenary_fe.engines.nonlinear.forces import local_compliance, solve
 from catenary_fe.engines.nonlinear.run import NonlinearEngine
@@ -88,7 +88,7 @@ def _parts(line: NonlinearEngine) -> list[tuple[str, float]]:
 
     jobs = {
         "iteration: cable forces": (take_cables, (2, system.elements, total, inner)),
-        "iteration: products with mass and damping": (take_one, (system.mass, u, x)),
+        "iteration: products with mass and damping": (take, (system.mass, u, x)),
         "iteration: solution": (solve, (factor, x)),
         "iteration: window of one contact": (local_compliance, (factor, at, weights, column)),
     }

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from kernels import entry
+from kernels import entry, feel
 from scipy.sparse.linalg import spsolve
 
 import catenary_fe as cf
@@ -118,7 +118,7 @@ def disturb(rng, setup, start, slots, slackening):
 def take(setup, slots):
     """One step."""
     wires, heads, work, b, g = slots.wires, slots.pantographs, slots.work, setup.scheme.b, setup.scheme.g
-    tension, last = work.tension[0].copy(), [array[0].copy() for array in heads[:4]]
+    tension, last = work.tension[:, 0].copy(), [array[0].copy() for array in heads[:4]]
     slots.advance(1)
     before = [[array[:, 0].copy() for array in wires[:3]], [array[0].copy() for array in heads[:3]]]
     ends = [
@@ -137,7 +137,7 @@ def travel(setup, pantographs, places, every, slackening=1.0):
     sizes = Sizes(
         pantographs=len(places) + 1, contacts=9, coordinates=6, steps=STEPS, shapes=STEPS + 1, points=3
     )
-    slots, rng, steps = Batch(setup, sizes, 1, every), np.random.default_rng(4), []
+    slots, rng, steps = Batch(setup, sizes, 1, every), np.random.default_rng(5), []
     slots.load(0, start, STEPS)
     for _ in range(STEPS):
         disturb(rng, setup, start, slots, slackening)
@@ -302,7 +302,8 @@ def test_the_last_step_to_the_circle_squares_the_error(twin_setup, y, z):
     setup, links = twin_setup, twin_setup.line.links
     slots = Batch(setup, Sizes(1, 1, 1, 1), 1)
     slots.wires.q[links.at[0], 0] = y, z
-    entry(update_arm)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
+    change = entry(update_arm)(setup.scheme, setup.line, slots.wires, slots.work, 0, 0)
+    feel(slots.wires, links.compliance, change)
     moved = (slots.wires.q + setup.scheme.b * slots.wires.x)[links.at, 0]
     assert slots.work.arm_force[0, 0] == pytest.approx(beyond_tangent(links, moved)[0], abs=1e-6)
 
@@ -394,5 +395,7 @@ class Dropper:
 
     def relaxed(self):
         """Its spring's and damper's force after having been brought to its law."""
-        entry(update_dropper)(self.scheme, self.line, self.slots.wires, self.slots.work, 0, self.i)
+        wires = self.slots.wires
+        change = entry(update_dropper)(self.scheme, self.line, wires, self.slots.work, 0, self.i)
+        feel(wires, self.line.dropper_compliance, [change], self.i)
         return tuple(force + c * self.taken for force, c in zip(self._at, self.gives, strict=True))

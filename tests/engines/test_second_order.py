@@ -8,14 +8,18 @@ from kernels import drive
 
 import catenary_fe as cf
 from catenary_fe.engines.base import RunCase
+from catenary_fe.engines.factor import packed_rows
 from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.results.signal import low_pass
 from catenary_fe.studies.linearised import LinearisedLine
 
 
 def without(line, part):
-    """The same catenary, without its swinging links or its inclined elements."""
+    """The same catenary, without its swinging links or its inclined elements, whose stiffness it keeps."""
     setup = line.engine.setup
+    if part == "stretch":
+        whole = packed_rows(setup.model.stiffness)
+        setup = replace(setup, operator=setup.operator._replace(stiffness=whole))
     none = type(getattr(setup.line, part))(*(_cut(array) for array in getattr(setup.line, part)))
     other = LinearisedLine(line.shape)
     other.engine.setup = replace(setup, line=setup.line._replace(**{part: none}))

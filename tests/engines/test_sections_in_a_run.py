@@ -97,16 +97,16 @@ def test_sections_met(shape) -> None:
     assert sections_met(paths, on, paths[0].x[-1] + 60.1, paths[0].x[-1] + 61.0) == (1, 3)
 
 
-def test_rows_are_filled_up_to_fours() -> None:
-    rows = Rows.of(np.array([0, 5, 9, 11]))
-    assert rows.starts.tolist() == [0, 8, 12, 16]
-    assert rows.place.tolist() == [0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13]
-    assert rows.number(np.array([-1, 5, 10])).tolist() == [-1, 8, 13]
-    assert rows.spread(np.ones((2, 11))).sum(axis=1).tolist() == [11.0, 11.0]
-    full = rows.matrix(csr_matrix(np.arange(121.0).reshape(11, 11)), 2.0).toarray()
-    assert full[8, 13] == 5 * 11 + 10
-    assert full[5, 5] == full[15, 15] == 2.0
-    assert np.count_nonzero(full) == 120 + 5
+def test_rows_are_filled_up_to_eights() -> None:
+    rows = Rows.of(np.array([0, 5, 13, 15]))
+    assert rows.starts.tolist() == [0, 8, 16, 24]
+    assert rows.place.tolist() == [*range(5), *range(8, 18)]
+    assert rows.number(np.array([-1, 5, 14])).tolist() == [-1, 8, 17]
+    assert rows.spread(np.ones((2, 15))).sum(axis=1).tolist() == [15.0, 15.0]
+    full = rows.matrix(csr_matrix(np.arange(225.0).reshape(15, 15)), 2.0).toarray()
+    assert full[8, 17] == 5 * 15 + 14
+    assert full[5, 5] == full[23, 23] == 2.0
+    assert np.count_nonzero(full) == 224 + 9
 
 
 def test_what_is_not_computed_is_held() -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers, Surfaces
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedFactor, PackedRows, Surfaces
 
 
 class ComplianceColumns(NamedTuple):
@@ -19,16 +19,14 @@ class ComplianceColumns(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """The step's matrix L diag(1 / inverse) Lᵀ, stiffness K, damping β K + rest.
+    """Factor of the step's matrix, stiffness K, damping β K + rest.
 
-    lower, upper : L and Lᵀ without their diagonals of ones; PackedRows for one slot, CsrRows for eight
+    stiffness : what of K the line's elements do not have
     """
 
-    lower: Any
-    upper: Any
-    inverse: Floats
-    stiffness: Any
-    rest: Any
+    factor: PackedFactor
+    stiffness: PackedRows
+    rest: PackedRows
     beta: float
 
 
@@ -47,11 +45,15 @@ class SteadyArmBars(NamedTuple):
 
 
 class StretchCoupling(NamedTuple):
-    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`."""
+    """Elements whose inclination lengthens a gap, see :class:`~catenary_fe.fe.reduction.StretchCoupling`.
+
+    stiffness : shape (elements, 11), what of the stiffness they have, see ``linearised.stretch``
+    """
 
     at: Integers
     length: Floats
     gap: Integers
+    stiffness: Floats
 
 
 class Line(NamedTuple):
@@ -93,3 +95,17 @@ class Line(NamedTuple):
     supports: Integers
     heights: Integers
     tensions: Integers
+
+
+class Near(NamedTuple):
+    """The coordinates that the laws of one slot's forces read: while these are sought, they alone move.
+
+    at : shape (room,), numbers of the coordinates, ``many[0]`` of them
+    free : [m/s²], shape (room,), their accelerations without what is owed
+    owed : [N], shape (contacts + droppers + 2 links,), changes of forces that all others have yet to feel
+    """
+
+    at: Integers
+    many: Integers
+    free: Floats
+    owed: Floats

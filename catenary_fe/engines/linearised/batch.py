@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines import arrays as shared
-from catenary_fe.engines import contact_solver, generalized_alpha, kernels, pantograph_laws
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels, lanes, pantograph_laws
 from catenary_fe.engines.arrays import (
     SLOTS,
     PantographParameters,
@@ -23,21 +23,14 @@ from catenary_fe.engines.compiled import compiled, kept, stamp, vectorising
 from catenary_fe.engines.contact_solver import advance_heads
 from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.history import History
-from catenary_fe.engines.kernels import (
-    add_loads,
-    lower_eight,
-    lower_one,
-    take_eight,
-    take_one,
-    upper_eight,
-    upper_one,
-)
+from catenary_fe.engines.kernels import add_loads, begin, lower, upper
+from catenary_fe.engines.lanes import aligned
 from catenary_fe.engines.linearised import arrays, forces, stretch
-from catenary_fe.engines.linearised.arrays import Line, Operator
+from catenary_fe.engines.linearised.arrays import Line, Near, Operator
 from catenary_fe.engines.linearised.forces import record, solve_contacts
 from catenary_fe.engines.linearised.leg import Leg
 from catenary_fe.engines.linearised.setup import Setup
-from catenary_fe.engines.linearised.stretch import couple_stretch_eight, couple_stretch_one
+from catenary_fe.engines.linearised.stretch import take_elements
 from catenary_fe.engines.recorder import (
     InitialState,
     Sizes,
@@ -68,9 +61,9 @@ class Batch:
         self._leg: Leg | None = None
         self._start: InitialState | None = None
         self._computed = Computed(setup.model.section_starts.size - 1)
-        self._operator = setup.for_one_slot if slots == 1 else setup.for_eight_slots
+        self._operator = setup.operator
         self.signals = np.zeros((0, sizes.steps + 2)) if signals is None else signals
-        self.wires = Wires(*(np.zeros((n, slots)) for _ in range(5)))
+        self.wires = Wires(*(aligned((n, slots)) for _ in range(5)))
         self.heads, self.pantographs = make_pantographs(slots, sizes, setup.nominal, setup.base_line)
         width = 2 * line.contact_compliance.value.shape[1]
         self.work = Work(
@@ -78,7 +71,7 @@ class Batch:
             law_force=np.zeros((slots, sizes.laws)),
             slack=np.zeros((slots, line.k.size)),
             arm_force=np.zeros((slots, line.links.k.size, 2)),
-            tension=np.zeros((slots, line.tensions.size)),
+            tension=aligned((line.tensions.size, slots)),
             active=np.zeros((slots, line.k.size), dtype=np.int64),
             active_count=np.zeros(slots, dtype=np.int64),
             column=np.zeros((slots, j, width)),
@@ -92,6 +85,13 @@ class Batch:
             base=np.zeros((slots, j)),
             head=np.zeros((slots, j, m)),
             head_compliance=np.zeros((slots, j, m)),
+        )
+        room = 4 * j + line.rows.column.size + line.links.at.size
+        self.near = Near(
+            at=np.zeros(room, dtype=np.int64),
+            many=np.zeros(1, dtype=np.int64),
+            free=np.zeros(room),
+            owed=np.zeros(j + line.k.size + line.links.at.size),
         )
         counts = line.k.size, line.supports.size, line.heights.size, line.tensions.size
         self._new_records = partial(make_records, slots, sizes, counts, every, spatial=setup.model.spatial)
@@ -109,7 +109,7 @@ class Batch:
         self.work.active_count[slot] = 0
         for array in (self.work.force, self.work.slack, self.work.arm_force):
             array[slot] = 0.0  # forces with which the run before ended
-        self.work.tension[slot] = start.q[self._setup.line.tensions]
+        self.work.tension[:, slot] = start.q[self._setup.line.tensions]
         load_pantographs(self.heads, self.pantographs, self.records, slot, self._setup.scheme, start, steps)
         supports, heights = self._setup.line.supports, self._setup.model.heights
         self.records.supports[slot, supports >= 0, 0] = start.q[supports[supports >= 0]]
@@ -122,11 +122,12 @@ class Batch:
         if self._setup.relays and self.count == 1:
             own = self._leg_of(steps)
         operator, line, wires, work, records = own
-        flat = Wires(*(array.reshape(-1) for array in wires))
-        rest = (self.signals, wires, flat, self.heads, self.pantographs, work, records, steps)
+        rows, tension = wires, work.tension
+        if self.count == 1:
+            rows, tension = Wires(*(array.reshape(-1) for array in wires)), tension.reshape(-1)
+        state = self.heads, self.pantographs, work, self.near, records
         with vectorising():
-            take = _advance_one if self.count == 1 else _advance_eight
-            take(self._setup.scheme, operator, line, *rest)
+            _advance(self._setup.scheme, operator, line, self.signals, wires, rows, tension, *state, steps)
 
     def _leg_of(self, steps: int) -> tuple[Operator, Line, Wires, Work, Records]:
         """Arrays of the sections that the run's pantographs are on during the next steps."""
@@ -172,79 +173,55 @@ def _finish(
     heads: PantographParameters,
     pantographs: PantographState,
     work: Work,
+    near: Near,
     records: Records,
 ) -> None:
     """Forces and records of all slots."""
     for c in range(pantographs.step.size):
         if pantographs.step[c] < heads.last[c]:
             advance_heads(scheme, pantographs, c)
-            solve_contacts(scheme, line, wires, heads, pantographs, work, records, c)
+            solve_contacts(scheme, line, wires, heads, pantographs, work, near, records, c)
             record(scheme, line, wires, heads, pantographs, work, records, c)
             pantographs.step[c] += 1
 
 
-def _loops(sources: str) -> tuple[Any, Any]:
-    """Steps of one slot and of eight; ``sources`` is the stamp of all that they call."""
+def _loop(sources: str) -> Any:
+    """Steps; ``sources`` is the stamp of all that they call."""
 
     @kept
-    def one(
+    def advance(
         scheme: Scheme,
         operator: Operator,
         line: Line,
         signals: Floats,
         wires: Wires,
-        flat: Wires,
+        rows: Wires,
+        tension: Floats,
         heads: PantographParameters,
         pantographs: PantographState,
         work: Work,
+        near: Near,
         records: Records,
         steps: int,
     ) -> int:
+        """Take steps in all slots; ``rows`` and ``tension`` are of one dimension if there is one slot."""
+        groups = line.load.size // 4
         for _ in range(steps):
-            predict(scheme, operator.beta, flat)
-            flat.x[:] = line.load
-            add_loads(line.patterns, signals[:, pantographs.step[0] + 1], flat.x)
-            take_one(operator.stiffness, flat.w, flat.x)
-            take_one(operator.rest, flat.v, flat.x)
-            couple_stretch_one(line, flat.q, work.tension[0], flat.x)
-            lower_one(operator.lower, flat.x, 0, flat.x.size // 4)
-            upper_one(operator.upper, operator.inverse, flat.x, 0, flat.x.size // 4)
-            _finish(scheme, line, wires, heads, pantographs, work, records)
-        return len(sources)
-
-    @kept
-    def eight(
-        scheme: Scheme,
-        operator: Operator,
-        line: Line,
-        signals: Floats,
-        wires: Wires,
-        flat: Wires,
-        heads: PantographParameters,
-        pantographs: PantographState,
-        work: Work,
-        records: Records,
-        steps: int,
-    ) -> int:
-        for _ in range(steps):
-            predict(scheme, operator.beta, flat)
-            for i in range(line.load.size):
-                wires.x[i, :] = line.load[i]
-            for c in range(SLOTS):
+            predict(scheme, operator.beta, rows)
+            begin(line.load, operator.stiffness, rows.w, operator.rest, rows.v, rows.x)
+            for c in range(pantographs.step.size):
                 add_loads(line.patterns, signals[:, pantographs.step[c] + 1], wires.x[:, c])
-            take_eight(operator.stiffness, wires.w, wires.x)
-            take_eight(operator.rest, wires.v, wires.x)
-            couple_stretch_eight(line, wires.q, work.tension, wires.x)
-            lower_eight(operator.lower, wires.x)
-            upper_eight(operator.upper, operator.inverse, wires.x)
-            _finish(scheme, line, wires, heads, pantographs, work, records)
+            take_elements(line, rows.q, tension, rows.w, rows.x)
+            lower(operator.factor, rows.x, 0, groups)
+            upper(operator.factor, rows.x, 0, groups)
+            _finish(scheme, line, wires, heads, pantographs, work, near, records)
         return len(sources)
 
-    return one, eight
+    return advance
 
 
-_advance_one, _advance_eight = _loops(
-    stamp(shared, generalized_alpha, contact_solver, pantograph_laws, kernels, arrays, forces, stretch)
+_advance = _loop(
+    stamp(shared, lanes, generalized_alpha, contact_solver, pantograph_laws, kernels, arrays, forces, stretch)
 )
 
 

@@ -14,6 +14,7 @@ from catenary_fe.engines.contact_solver import (
     TOLERANCE,
     free_heads,
     lateral_place,
+    move_wires,
     one_way,
     place_base,
     place_head,
@@ -21,7 +22,7 @@ from catenary_fe.engines.contact_solver import (
     weigh_contact,
 )
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.linearised.arrays import Line, SteadyArmBars
+from catenary_fe.engines.linearised.arrays import Line, Near, SteadyArmBars
 from catenary_fe.engines.pantograph_laws import update_laws
 
 UNSETTLED = 1e-3  # [N] by which they may still change after the last sweep
@@ -48,14 +49,20 @@ def place_contact(
         k = line.column[e + m // 2, m % 2]
         if k >= 0 and work.on[c, j]:
             shift = line.contact_compliance.first[k] - low
-            for i in range(size):
-                column[shift + i] += shape[m] * line.contact_compliance.value[k, i]
+            add_scaled(column[shift : shift + size], shape[m], line.contact_compliance.value[k])
     place_head(heads, work, c, j, lateral)
 
 
 @compiled
+def add_scaled(to: Floats, factor: float, values: Floats) -> None:
+    """to += factor values"""
+    for i in range(to.size):
+        to[i] += factor * values[i]
+
+
+@compiled
 def update_dropper(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int) -> float:
-    """Bring one dropper's force to its law, from a taut one's; returns the change [N]."""
+    """Bring one dropper's force to its law, from a taut one's; returns the change [N], to be felt."""
     spring, damper = dropper_parts(scheme, line, wires, c, i)
     old = work.slack[c, i]
     if old == 0.0 and spring > 0 and -spring <= damper <= spring:
@@ -71,25 +78,13 @@ def update_dropper(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int,
         new = (damper - spring) / (1 - cd + cs)
         if not damper + cd * new > spring + cs * new > 0:
             new = (spring + damper) / (1 - cs - cd)
-    change = new - old
     work.slack[c, i] = new
-    for m in range(line.dropper_compliance.value.shape[1]):
-        wires.x[first + m, c] += change * line.dropper_compliance.value[i, m]
-    return float(abs(change))
+    return float(new - old)
 
 
 @compiled
-def update_arms(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int) -> float:
-    """Bring all links' forces to what they are on their circles; returns the largest change [N]."""
-    change = 0.0
-    for i in range(line.links.k.size):
-        change = max(change, update_arm(scheme, line, wires, work, c, i))
-    return change
-
-
-@compiled
-def update_arm(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int) -> float:
-    """Bring a link's force from its tangent to what it is on its circle; returns the change [N]."""
+def update_arm(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: int) -> tuple[float, float]:
+    """Bring a link's force from its tangent to its circle; returns the change [N], to be felt."""
     links, force = line.links, work.arm_force[c, i]
     a, b = links.at[i, 0], links.at[i, 1]
     y = wires.q[a, c] + scheme.b * wires.x[a, c]
@@ -112,15 +107,9 @@ def update_arm(scheme: Scheme, line: Line, wires: Wires, work: Work, c: int, i: 
         dz = (m11 * off_z - m21 * off_y) / determinant
         change_y, change_z = change_y + dy, change_z + dz
         y, z = y + yy * dy + yz * dz, z + zy * dy + zz * dz
-    if change_y == 0.0 and change_z == 0.0:
-        return 0.0
     force[0] += change_y
     force[1] += change_z
-    for m in range(of_y.size):
-        wires.x[first_y + m, c] += change_y * of_y[m]
-    for m in range(of_z.size):
-        wires.x[first_z + m, c] += change_z * of_z[m]
-    return float(abs(change_y) + abs(change_z))
+    return change_y, change_z
 
 
 @compiled
@@ -163,48 +152,149 @@ def solve_contacts(
     heads: PantographParameters,
     pantographs: PantographState,
     work: Work,
+    near: Near,
     to: Records,
     c: int,
 ) -> None:
     """Forces of contacts and droppers of one slot at the step's end."""
-    contacts, time = 0, scheme.h * (pantographs.step[c] + 1)
+    n = pantographs.step[c] + 1
+    forces, time = line.links.k.size + heads.laws.kind.shape[1], scheme.h * n
     for j in range(heads.owner.shape[1]):
         work.force[c, j] = 0.0
         if heads.owner[c, j] >= 0:
             position = heads.start[c, j] + heads.speed[c, j] * time
             place_contact(line, heads, work, c, j, position)
             place_base(heads, work, c, j, time)
-            contacts += 1
+            forces += 1
     for a in range(work.active_count[c]):
         work.slack[c, work.active[c, a]] = 0.0
-    links = line.links.k.size
-    if links > 0:
+    if line.links.k.size > 0:
         work.arm_force[c, :, :] = 0.0
-    laws = heads.laws.kind.shape[1]
-    if laws > 0:
+    if heads.laws.kind.shape[1] > 0:
         work.law_force[c, :] = 0.0
     free_heads(heads, pantographs, c, time)
-    settled, change = True, 0.0
     while True:
+        begin_sweeps(line, wires, heads, work, near, c)
         for _ in range(SWEEPS):
-            change = 0.0
-            for j in range(heads.owner.shape[1]):
-                if heads.owner[c, j] >= 0:
-                    change = max(change, update_contact(scheme, wires, heads, pantographs, work, c, j))
-            for a in range(work.active_count[c]):
-                change = max(change, update_dropper(scheme, line, wires, work, c, work.active[c, a]))
-            if links > 0:
-                change = max(change, update_arms(scheme, line, wires, work, c))
-            if laws > 0:
-                change = max(change, update_laws(scheme, heads, pantographs, work, c, time))
-            settled = change <= TOLERANCE or contacts + work.active_count[c] + links + laws == 1
+            change = sweep(scheme, line, wires, heads, pantographs, work, near, c, time)
+            settled = change <= TOLERANCE or forces + work.active_count[c] == 1
             if settled:
                 break
-        if not find_slack(scheme, line, wires, work, to.droppers[c, :, pantographs.step[c] + 1], c):
+        end_sweeps(line, wires, heads, work, near, c)
+        if not find_slack(scheme, line, wires, work, to.droppers[c, :, n], c):
             break
-    keep_slack(scheme, line, wires, work, to, c, pantographs.step[c] + 1)
+    keep_slack(scheme, line, wires, work, to, c, n)
     if not settled and change > UNSETTLED:
         work.force[c, :] = np.nan  # the run's end says so
+
+
+@compiled
+def begin_sweeps(
+    line: Line, wires: Wires, heads: PantographParameters, work: Work, near: Near, c: int
+) -> None:
+    """Find the coordinates that laws read."""
+    near.many[0] = 0
+    for j in range(heads.owner.shape[1]):
+        if heads.owner[c, j] >= 0:
+            for m in range(4):
+                read_too(near, work.at[c, j, m])
+    for a in range(work.active_count[c]):
+        i = work.active[c, a]
+        for m in range(line.rows.start[i], line.rows.start[i + 1]):
+            read_too(near, line.rows.column[m])
+    for i in range(line.links.k.size):
+        read_too(near, line.links.at[i, 0])
+        read_too(near, line.links.at[i, 1])
+    for k in range(near.many[0]):
+        near.free[k] = wires.x[near.at[k], c]
+
+
+@compiled
+def read_too(near: Near, i: int) -> None:
+    """A law reads this coordinate, too, if it is one."""
+    many = near.many[0]
+    if i < 0:
+        return
+    for k in range(many):
+        if near.at[k] == i:
+            return
+    near.at[many] = i
+    near.many[0] = many + 1
+
+
+@compiled
+def sweep(
+    scheme: Scheme,
+    line: Line,
+    wires: Wires,
+    heads: PantographParameters,
+    pantographs: PantographState,
+    work: Work,
+    near: Near,
+    c: int,
+    time: float,
+) -> float:
+    """Bring each force to its law in turn; returns the largest change [N]."""
+    largest, contacts = 0.0, heads.owner.shape[1]
+    for j in range(contacts):
+        if heads.owner[c, j] >= 0:
+            change = update_contact(scheme, wires, heads, pantographs, work, c, j)
+            push(wires, near, c, j, work.first[c, j], work.column[c, j, : work.width[c, j]], change)
+            largest = max(largest, abs(change))
+    give = line.dropper_compliance
+    for a in range(work.active_count[c]):
+        i = work.active[c, a]
+        change = update_dropper(scheme, line, wires, work, c, i)
+        push(wires, near, c, contacts + i, give.first[i], give.value[i], change)
+        largest = max(largest, abs(change))
+    give = line.links.compliance
+    for i in range(line.links.k.size):
+        y, z = update_arm(scheme, line, wires, work, c, i)
+        m = contacts + line.k.size + 2 * i
+        push(wires, near, c, m, give.first[2 * i], give.value[2 * i], y)
+        push(wires, near, c, m + 1, give.first[2 * i + 1], give.value[2 * i + 1], z)
+        largest = max(largest, abs(y) + abs(z))
+    if heads.laws.kind.shape[1] > 0:
+        largest = max(largest, update_laws(scheme, heads, pantographs, work, c, time))
+    return largest
+
+
+@compiled
+def push(wires: Wires, near: Near, c: int, of: int, first: int, column: Floats, change: float) -> None:
+    """What a force's change [N] does to the coordinates that laws read; the others have yet to feel it."""
+    if change == 0.0:
+        return
+    near.owed[of] += change
+    for k in range(near.many[0]):
+        i = near.at[k]
+        if first <= i < first + column.size:
+            wires.x[i, c] += change * column[i - first]
+
+
+@compiled
+def end_sweeps(line: Line, wires: Wires, heads: PantographParameters, work: Work, near: Near, c: int) -> None:
+    """Let all coordinates feel what is owed."""
+    for k in range(near.many[0]):
+        wires.x[near.at[k], c] = near.free[k]
+    contacts = heads.owner.shape[1]
+    for j in range(contacts):
+        if heads.owner[c, j] >= 0:
+            pay(wires, near, c, j, work.first[c, j], work.column[c, j, : work.width[c, j]])
+    give = line.dropper_compliance
+    for a in range(work.active_count[c]):
+        i = work.active[c, a]
+        pay(wires, near, c, contacts + i, give.first[i], give.value[i])
+    give = line.links.compliance
+    for m in range(2 * line.links.k.size):
+        pay(wires, near, c, contacts + line.k.size + m, give.first[m], give.value[m])
+
+
+@compiled
+def pay(wires: Wires, near: Near, c: int, of: int, first: int, column: Floats) -> None:
+    """Let all coordinates feel what is owed of a force."""
+    if near.owed[of] != 0.0:
+        move_wires(wires, c, first, column, near.owed[of])
+        near.owed[of] = 0.0
 
 
 @compiled
@@ -281,7 +371,7 @@ def record(
     for s in range(line.tensions.size):
         i = line.tensions[s]
         tension = wires.q[i, c] + scheme.b * wires.x[i, c]
-        work.tension[c, s] = tension
+        work.tension[s, c] = tension
         if abs(tension) > to.change[c, s]:
             to.change[c, s], to.changed[c, s] = abs(tension), n
     if to.every > 0 and n % to.every == 0:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import Records, Wires, Work
 from catenary_fe.engines.linearised.arrays import ComplianceColumns, Line, Operator, StretchCoupling
 from catenary_fe.engines.linearised.setup import Setup, Slices
-from catenary_fe.engines.sections import csr_part, moved, packed_part
+from catenary_fe.engines.sections import csr_part, factor_part, moved, packed_part
 
 Integers = NDArray[np.int64]
 
@@ -30,11 +30,9 @@ class Leg:
         a, b = sections
         at = Slices(*(slice(int(starts[a]), int(starts[b])) for starts in setup.parts))
         first, end = at.rows.start, at.rows.stop
-        whole = setup.for_one_slot
+        whole = setup.operator
         operator = whole._replace(
-            lower=packed_part(whole.lower, first, end),
-            upper=packed_part(whole.upper, first, end),
-            inverse=whole.inverse[at.rows],
+            factor=factor_part(whole.factor, first, end),
             stiffness=packed_part(whole.stiffness, first, end),
             rest=packed_part(whole.rest, first, end),
         )
@@ -50,7 +48,7 @@ class Leg:
             slack=work.slack[:, self.at.droppers],
             active=work.active[:, self.at.droppers],
             arm_force=work.arm_force[:, self.at.links],
-            tension=work.tension[:, self.at.gaps],
+            tension=work.tension[self.at.gaps],
         )
 
     def records(self, records: Records) -> Records:
@@ -94,7 +92,10 @@ def _line(line: Line, at: Slices[slice]) -> Line:
             compliance=_columns(links.compliance, both, first),
         ),
         stretch=StretchCoupling(
-            moved(stretch.at[mine], first, end), stretch.length[mine], stretch.gap[mine] - at.gaps.start
+            moved(stretch.at[mine], first, end),
+            stretch.length[mine],
+            stretch.gap[mine] - at.gaps.start,
+            stretch.stiffness[mine],
         ),
         load=line.load[at.rows],
         patterns=csr_part(line.patterns, at.rows, 0),

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
+from catenary_fe.engines.factor import csr_rows, factorise, packed_factor, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme, make_scheme
 from catenary_fe.engines.linearised.arrays import (
     Line,
@@ -19,6 +17,7 @@ from catenary_fe.engines.linearised.arrays import (
     StretchCoupling,
 )
 from catenary_fe.engines.linearised.columns import compliance_columns
+from catenary_fe.engines.linearised.stretch import by_elements
 from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.engines.sections import Rows, parts_of
 from catenary_fe.engines.settings import TimeSettings
@@ -61,9 +60,7 @@ class Setup:
     static: Any
     nominal: float
     base_line: BaseLine
-    beta: float
-    stiffness: Any
-    rest: Any
+    operator: Operator
     parts: Slices[Integers]
     relays: bool
 
@@ -74,18 +71,8 @@ class Setup:
 
     @property
     def size(self) -> int:
-        """Number of coordinates, filled up to a multiple of four."""
-        return int(self.stiffness.shape[0])
-
-    @cached_property
-    def for_one_slot(self) -> Operator:
-        """The factors in the form that suits one run."""
-        return _operator(self, packed_rows)
-
-    @cached_property
-    def for_eight_slots(self) -> Operator:
-        """The factors in the form that suits a batch."""
-        return _operator(self, csr_rows)
+        """Number of coordinates, filled up to a multiple of eight."""
+        return self.model.size
 
 
 def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
@@ -96,11 +83,11 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
     starts = model.section_starts
     factor = factorise(model.mass + scheme.g * model.damping + scheme.b * model.stiffness)
     static = factorise(model.stiffness)
-    K = model.stiffness.tocsr()
-    rest = (model.damping - beta * K).tocsr()
+    rest = (model.damping - beta * model.stiffness).tocsr()
     rest.data[np.abs(rest.data) < 1e-12 * np.abs(model.damping.data).max(initial=0.0)] = 0.0
     rest.eliminate_zeros()
-    line = _line(model, factor)
+    of_elements, others = by_elements(model.stiffness, model.stretch.index, model.tensions[model.stretch.gap])
+    line = _line(model, factor, of_elements)
     of_gaps = np.array([wire.section for wire in system.wires])[model.gaps.wire]
     return Setup(
         model=model,
@@ -110,9 +97,12 @@ def set_up(model: LinearModel, time: TimeSettings, system: System) -> Setup:
         static=static,
         nominal=nominal,
         base_line=system.base_line,
-        beta=beta,
-        stiffness=K,
-        rest=rest,
+        operator=Operator(
+            factor=packed_factor(factor),
+            stiffness=packed_rows(others),
+            rest=packed_rows(rest),
+            beta=beta,
+        ),
         parts=Slices(
             rows=starts,
             droppers=parts_of(system.section[system.droppers.first], starts.size - 1),
@@ -128,19 +118,8 @@ def _widest(line: Line) -> int:
     return max(int(columns.value.shape[1]) for columns in each)
 
 
-def _operator(setup: Setup, form: Callable[..., Any]) -> Operator:
-    return Operator(
-        lower=form(setup.factor.L, "lower"),
-        upper=form(setup.factor.L.T, "upper"),
-        inverse=1 / setup.factor.U.diagonal(),
-        stiffness=form(setup.stiffness),
-        rest=form(setup.rest),
-        beta=setup.beta,
-    )
-
-
 def _filled_up(model: LinearModel) -> LinearModel:
-    """With idle coordinates at the end of each section, up to a multiple of four."""
+    """With idle coordinates at the end of each section, up to a multiple of eight."""
     from scipy.sparse import csr_matrix
 
     rows = Rows.of(model.section_starts)
@@ -168,7 +147,7 @@ def _filled_up(model: LinearModel) -> LinearModel:
     )
 
 
-def _line(model: LinearModel, factor: Any) -> Line:
+def _line(model: LinearModel, factor: Any, of_elements: Floats) -> Line:
     from scipy.sparse import csc_matrix
 
     contacts, starts = model.contacts, model.section_starts
@@ -193,7 +172,7 @@ def _line(model: LinearModel, factor: Any) -> Line:
         tension=model.dropper_tension,
         dropper_compliance=compliance_columns(factor, model.dropper_rows.T.tocsc(), starts),
         links=_links(model, factor),
-        stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap),
+        stretch=StretchCoupling(model.stretch.index, model.stretch.length, model.stretch.gap, of_elements),
         load=model.load,
         patterns=csr_rows(model.patterns),
         surfaces=surfaces_of(contacts),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedRows, Surfaces
+from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedFactor, PackedRows, Surfaces
 from catenary_fe.engines.nonlinear.cables import Elements
 
 
@@ -76,14 +76,12 @@ class Stations(NamedTuple):
 
 
 class Factor(NamedTuple):
-    """L diag(1 / inverse) Lᵀ of the step's matrix at rest, M + g D + b K, all droppers taut.
+    """Of the step's matrix at rest, M + g D + b K, all droppers taut.
 
     window : shape (free,), zero outside :func:`~catenary_fe.engines.nonlinear.forces.local_compliance`
     """
 
-    lower: PackedRows
-    upper: PackedRows
-    inverse: Floats
+    packed: PackedFactor
     window: Floats
 
 

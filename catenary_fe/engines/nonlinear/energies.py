@@ -6,7 +6,7 @@ from catenary_fe.engines.arrays import Floats, PantographParameters, PantographS
 from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.contact_solver import base_height, risen_base, surface_at
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.kernels import take_one
+from catenary_fe.engines.kernels import take
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Motion
 from catenary_fe.engines.pantograph_laws import frame_at
 from catenary_fe.layout.bodies import DAMPER, FRAME, FRICTION
@@ -31,7 +31,7 @@ def add_energy(
         moved[i], energy.q[i] = q - energy.q[i], q
         motion.v[i] = wires.v[i, 0] + scheme.g * wires.x[i, 0]
     drag[:] = 0.0
-    take_one(system.damping, motion.v, drag)  # its negative
+    take(system.damping, motion.v, drag)  # its negative
     for i in range(moved.size):
         lost += (energy.drag[i] - drag[i]) * moved[i] / 2
         energy.drag[i] = -drag[i]

@@ -8,7 +8,7 @@ from catenary_fe.engines.arrays import Floats, Integers
 from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.contact_solver import one_way
 from catenary_fe.engines.generalized_alpha import Scheme
-from catenary_fe.engines.kernels import lower_one, upper_one
+from catenary_fe.engines.kernels import lower, upper
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, SpringArrays
 
 REACH = 64  # groups of four coordinates beyond which a force is not felt within a step
@@ -88,7 +88,7 @@ def local_compliance(factor: Factor, at: Integers, weights: Floats, column: Floa
 
     Written to ``column``; returns from which coordinate on, and in how many.
     """
-    groups = factor.inverse.size // 4
+    groups = factor.window.size // 4
     low, high = groups, -1
     for m in range(at.size):
         if at[m] >= 0:
@@ -100,8 +100,8 @@ def local_compliance(factor: Factor, at: Integers, weights: Floats, column: Floa
     for m in range(at.size):
         if at[m] >= 0:
             window[at[m]] += weights[m]
-    lower_one(factor.lower, window, low, last)  # what is outside is zero
-    upper_one(factor.upper, factor.inverse, window, first, last)
+    lower(factor.packed, window, low, last)  # what is outside is zero
+    upper(factor.packed, window, first, last)
     for i in range(begin, end):
         column[i - begin] = window[i]
         window[i] = 0.0
@@ -135,5 +135,5 @@ def woodbury_update(factor: Factor, slack: Slack, x: Floats) -> None:
 def solve(factor: Factor, x: Floats) -> None:
     """Solve with the step's matrix at rest, in place."""
     groups = x.size // 4
-    lower_one(factor.lower, x, 0, groups)
-    upper_one(factor.upper, factor.inverse, x, 0, groups)
+    lower(factor.packed, x, 0, groups)
+    upper(factor.packed, x, 0, groups)

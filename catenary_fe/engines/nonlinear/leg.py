@@ -21,7 +21,7 @@ from catenary_fe.engines.nonlinear.arrays import (
 from catenary_fe.engines.nonlinear.cables import Elements
 from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
-from catenary_fe.engines.sections import csr_part, moved, packed_part
+from catenary_fe.engines.sections import csr_part, factor_part, moved, packed_part
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -81,12 +81,7 @@ class Leg:
     def factor(self, factor: Factor) -> Factor:
         """Its part of the step's matrix."""
         first, end = self.rows.start, self.rows.stop
-        return Factor(
-            packed_part(factor.lower, first, end),
-            packed_part(factor.upper, first, end),
-            factor.inverse[self.rows],
-            factor.window[self.rows],
-        )
+        return Factor(factor_part(factor.packed, first, end), factor.window[self.rows])
 
     def arrays(self, state: State, records: Records) -> Arrays:
         """Its part of the run: views, but for what :meth:`take_from` and :meth:`put_back` copy."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from catenary_fe.engines.factor import csr_rows, factorise, packed_rows
+from catenary_fe.engines.factor import csr_rows, factorise, packed_factor, packed_rows
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays, Stations
 from catenary_fe.engines.nonlinear.cables import Elements
@@ -115,12 +115,7 @@ class Parameters:
         tangent = self.system.tangent(moved)
         matrix = self.mass + scheme.g * self._taut_damping + scheme.b * tangent
         factor = factorise(self.rows.matrix(matrix, 1.0))
-        return Factor(
-            packed_rows(factor.L, "lower"),
-            packed_rows(factor.L.T, "upper"),
-            1 / factor.U.diagonal(),
-            np.zeros(factor.shape[0]),
-        )
+        return Factor(packed_factor(factor), np.zeros(factor.shape[0]))
 
 
 def _arrays(springs: Springs) -> SpringArrays:

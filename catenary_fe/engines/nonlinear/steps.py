@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from catenary_fe.engines import arrays as shared_arrays
-from catenary_fe.engines import contact_solver, generalized_alpha, kernels, pantograph_laws
+from catenary_fe.engines import contact_solver, generalized_alpha, kernels, lanes, pantograph_laws
 from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Records, Wires, Work
 from catenary_fe.engines.compiled import compiled, kept, stamp
 from catenary_fe.engines.contact_solver import (
@@ -18,13 +18,14 @@ from catenary_fe.engines.contact_solver import (
     advance_heads,
     free_heads,
     lateral_place,
+    move_wires,
     place_base,
     place_head,
     update_contact,
     weigh_contact,
 )
 from catenary_fe.engines.generalized_alpha import Scheme, predict
-from catenary_fe.engines.kernels import add_loads, take_one
+from catenary_fe.engines.kernels import add_loads, copy, take
 from catenary_fe.engines.nonlinear import arrays, cables, energies, forces
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
 from catenary_fe.engines.nonlinear.cables import take_cables
@@ -103,14 +104,14 @@ def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -
     residual, axes = motion.residual, system.droppers.pivot.shape[1]
     take_cables(axes, system.elements, motion.total, motion.inner)
     take_links(system.links, motion.total, motion.inner)
-    residual[:] = system.force
+    copy(system.force, residual)
     add_loads(system.patterns, signals, residual)
     for i in range(system.dof.size):
         if system.dof[i] >= 0:
             residual[system.dof[i]] += motion.inner[i]
-    take_one(system.stiffness, motion.q, residual)
-    take_one(system.mass, flat.x, residual)
-    take_one(system.damping, motion.v, residual)
+    take(system.stiffness, motion.q, residual)
+    take(system.mass, flat.x, residual)
+    take(system.damping, motion.v, residual)
 
 
 @compiled
@@ -139,7 +140,9 @@ def _relax(
             change = update_laws(scheme, heads, pantographs, work, 0, time)
         for j in range(contacts):
             if heads.owner[0, j] >= 0:
-                change = max(change, update_contact(scheme, wires, heads, pantographs, work, 0, j))
+                more = update_contact(scheme, wires, heads, pantographs, work, 0, j)
+                move_wires(wires, 0, work.first[0, j], work.column[0, j, : work.width[0, j]], more)
+                change = max(change, abs(more))
         if change <= TOLERANCE or contacts + laws == 1:
             break
 
@@ -257,12 +260,14 @@ def _loop(sources: str) -> Any:
             add_energy(system, scheme, wires, motion, heads, pantographs, work, energy, scheme.h * (n + 1))
             if signals.shape[0] > 0:
                 residual[:] = 0.0
-                add_loads(system.patterns, (signals[:, n - begin] + signals[:, n + 1 - begin]) / 2, residual)
-                energy.work[0] += (residual * motion.before).sum()
+                for end in (n - begin, n + 1 - begin):
+                    add_loads(system.patterns, signals[:, end], residual)
+                for i in range(residual.size):
+                    energy.work[0] += residual[i] * motion.before[i] / 2
             if (n + 1) % parts == 0:
                 _record(scheme, stations, system, wires, motion, heads, pantographs, work, records)
                 pantographs.step[0] = step
-                energy.history[:, step] = energy.work
+                copy(energy.work, energy.history[:, step])
         return True, iterations
 
     return advance
@@ -275,6 +280,7 @@ advance = _loop(
         contact_solver,
         pantograph_laws,
         kernels,
+        lanes,
         arrays,
         cables,
         energies,
