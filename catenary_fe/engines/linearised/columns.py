@@ -34,14 +34,12 @@ def compliance_columns(factor: Any, right: Any, starts: Integers) -> ComplianceC
     few = order[:: -(-count // _FEW)]
     part = right[:, few]
     first_few = (part.indptr, part.indices, part.data), np.arange(few.size), middle[few] - size
-    with vectorising():
-        _, begin, end = _windows(triangle, inverse, *first_few, 2 * size)
+    _, begin, end = _windows(triangle, inverse, *first_few, 2 * size)
     reach = max(int((size - begin).max()), int((end - size).max()))
     window = int(2.4 * reach) + _EDGE
     while True:
         low = middle - window // 2
-        with vectorising():
-            values, begin, end = _windows(triangle, inverse, sides, order, low, window)
+        values, begin, end = _windows(triangle, inverse, sides, order, low, window)
         edge = window // _EDGE
         if window > 2 * size or (begin.min() >= edge and end.max() <= window - edge):
             break
@@ -51,10 +49,11 @@ def compliance_columns(factor: Any, right: Any, starts: Integers) -> ComplianceC
     section = np.searchsorted(starts, middle, side="right")
     first = np.clip(low + (begin + end - width) // 2, starts[section - 1], starts[section] - width)
     first = np.clip(first, 0, size - width)
-    return ComplianceColumns(first, _cut(values, first - low, width))
+    cut = np.zeros((count, width))
+    _cut(values, first - low, cut)
+    return ComplianceColumns(first, cut)
 
 
-@kept
 def _windows(
     triangle: tuple[Any, Any, Floats],
     inverse: Floats,
@@ -63,14 +62,28 @@ def _windows(
     low: Integers,
     window: int,
 ) -> tuple[Floats, Integers, Integers]:
-    """Each column from its row ``low`` on, shape (columns, window), and where in it it is not negligible.
+    """Each column from its row ``low`` on, shape (columns, window), and where in it it is not negligible."""
+    values = np.zeros((order.size, window))
+    begin, end = np.full(order.size, window), np.zeros(order.size, np.int64)
+    with vectorising():
+        _solve_all(triangle, inverse, sides, order, low, values, begin, end, np.zeros((inverse.size, SLOTS)))
+    return values, begin, end
 
-    As many neighbours as there are slots are solved for side by side.
-    """
-    size, count = inverse.size, order.size
-    values = np.zeros((count, window))
-    begin, end = np.full(count, window), np.zeros(count, np.int64)
-    x = np.zeros((size, SLOTS))
+
+@kept
+def _solve_all(
+    triangle: tuple[Any, Any, Floats],
+    inverse: Floats,
+    sides: tuple[Any, Any, Floats],
+    order: Integers,
+    low: Integers,
+    values: Floats,
+    begin: Integers,
+    end: Integers,
+    x: Floats,
+) -> None:
+    """Fill what :func:`_windows` returns; as many neighbours as there are slots side by side, in ``x``."""
+    size, count, window = inverse.size, order.size, values.shape[1]
     for group in range(0, count, SLOTS):
         mine = order[group : group + SLOTS]
         top, bottom = max(low[mine[0]], 0), min(low[mine[-1]] + window, size)
@@ -92,7 +105,6 @@ def _windows(
                 if abs(x[i, c]) > least:
                     begin[k] = min(begin[k], i - low[k])
                     end[k] = i - low[k] + 1
-    return values, begin, end
 
 
 @compiled
@@ -125,10 +137,9 @@ def _solve(triangle: tuple[Any, Any, Floats], inverse: Floats, x: Floats, rows: 
 
 
 @kept
-def _cut(values: Floats, first: Integers, width: int) -> Floats:
-    """From each row, so many values from its place ``first`` on; 0 beyond the row's ends."""
-    found = np.zeros((first.size, width))
+def _cut(values: Floats, first: Integers, cut: Floats) -> None:
+    """Fill each row of ``cut`` from its place ``first`` on; what lies beyond the row's ends stays 0."""
+    width = cut.shape[1]
     for k in range(first.size):
         for i in range(max(-first[k], 0), min(width, values.shape[1] - first[k])):
-            found[k, i] = values[k, first[k] + i]
-    return found
+            cut[k, i] = values[k, first[k] + i]
