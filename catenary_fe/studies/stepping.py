@@ -104,7 +104,7 @@ def _one_each(name: str, values: ArrayLike, count: int, most: float, unit: str) 
         raise InputError(
             f"{name} = {found.tolist()} {unit}: must be within ±{most:g} {unit}; look at the unit"
         )
-    return np.broadcast_to(found, (count,)).copy()
+    return np.full(count, found)
 
 
 def _refuse_moving_bases(shape: Shape, what: str) -> None:

@@ -95,7 +95,7 @@ class Leg:
                 v=motion.v[self.rows],
                 residual=motion.residual[self.rows],
                 before=motion.before[self.rows],
-                total=motion.total[self.coordinates],
+                total=motion.total[self.coordinates] if self._is_part(motion) else motion.total,
                 inner=motion.inner[self.coordinates],
             ),
             Slack(
@@ -116,13 +116,18 @@ class Leg:
             records._replace(droppers=records.droppers[:, self.droppers]),
         )
 
+    def _is_part(self, motion: Motion) -> bool:
+        return self.coordinates.size < motion.total.size
+
     def take_from(self, state: State, arrays: Arrays) -> None:
         """Read what is no view from the run, before steps."""
-        np.take(state.motion.total, self.coordinates, out=arrays.motion.total)
+        if self._is_part(state.motion):
+            np.take(state.motion.total, self.coordinates, out=arrays.motion.total)
 
     def put_back(self, arrays: Arrays, state: State) -> None:
         """Write it into the run, after them."""
-        state.motion.total[self.coordinates] = arrays.motion.total
+        if self._is_part(state.motion):
+            state.motion.total[self.coordinates] = arrays.motion.total
 
     def take_over(self, state: State, before: Leg) -> None:
         """Number anew what the energy balance keeps of contacts; compliances are found again."""

@@ -140,6 +140,7 @@ class NonlinearRun:
         energy = EnergyRecord(self._parameters, pantographs)
         self._recorder = RunRecorder(self.state, self.records, TensionRecord(TensionGauge(system)), energy)
         self._recorder.read(engine._scheme, moved)
+        self._strips = [np.flatnonzero(heads.owner[0] == p) for p in range(len(pantographs))]
         self.iterations, self.done = 0, 0
         self._notes: list[str] = []
 
@@ -230,13 +231,13 @@ class NonlinearRun:
 
     def contact_forces(self) -> Floats:
         """[N], shape (pantographs,), now."""
-        owner, force = self.state.heads.owner[0], self.state.work.force[0]
-        return np.array([force[owner == p].sum() for p in range(len(self.placed))])
+        force = self.state.work.force[0]
+        return np.array([force[own].sum() for own in self._strips])
 
     def wire_heights(self) -> Floats:
         """[m], shape (pantographs,), above the nominal contact wire height: of the lowest over each head."""
-        owner, heights = self.state.heads.owner[0], self.records.height[0, :, self.done]
-        return np.array([np.fmin.reduce(heights[owner == p]) for p in range(len(self.placed))])
+        heights = self.records.height[0, :, self.done]
+        return np.array([np.fmin.reduce(heights[own]) for own in self._strips])
 
     def take_up(self, checkpoint: Checkpoint | None) -> None:
         """Go on from what a checkpoint kept, if it kept anything."""
