@@ -22,11 +22,18 @@ from catenary_fe.engines.arrays import SLOTS
 from catenary_fe.engines.base import RunCase
 from catenary_fe.engines.nonlinear.run import NonlinearEngine
 from catenary_fe.fe.reduction import linear_model
+from catenary_fe.studies.checks import plan_run
 from catenary_fe.studies.linearised import LinearisedLine
+from catenary_fe.studies.reference_models import reference_line
 
 LAYOUT = Path(__file__).parents[2] / "models" / "layouts" / "en50318_2002.toml"
 SPEED, START, STEP = 300 / 3.6, 10.0, 1e-3
 CASES_A_CORE = 2 * SLOTS
+DESIGNS = {  # steps of 2 ms leave σ within 1 % of a converged run: see models/studies/cost_and_error.md
+    "designs_per_minute": ("designs a minute, ten spans, 2 ms", 2e-3, False),
+    "designs_per_minute_1_ms": ("designs a minute, ten spans, 1 ms", 1e-3, False),
+    "designs_per_minute_short": ("designs a minute, as optimise runs, 2 ms", 2e-3, True),
+}
 
 
 def nonlinear(line: NonlinearEngine, seconds: float) -> float:
@@ -72,14 +79,26 @@ def sweep_worker(cases: int) -> tuple[float, float]:
     return (linearised(_line, cases), time.process_time() - begin) if cases else (0.0, 0.0)
 
 
-def design_worker(designs: int, first: int) -> float:
-    """Processor time of so many designs, none of which has the tension of another one."""
-    begin, line = time.process_time(), cf.load_catenary(LAYOUT)
+def design_worker(designs: int, first: int, step: float, short: bool) -> float:
+    """Processor time of so many designs, none of which has the tension of another one.
+
+    short : as ``optimise`` runs them, to a span behind the last evaluated one
+    """
+    begin, catenary, settings = time.process_time(), cf.load_catenary(LAYOUT), cf.TimeSettings(step=step)
     head = cf.library.pantograph("EN 50318:2002")
     for n in range(first, first + designs):
-        wire = line.contact_wire.replace(tension=20e3 + 7.0 * n)
-        shape = cf.find_form(line.replace(contact_wire=wire))
-        cf.simulate(shape, [head], speed=SPEED, method="linearised").contact_force_statistics()
+        wire = catenary.contact_wire.replace(tension=20e3 + 7.0 * n)
+        line = LinearisedLine(cf.find_form(catenary.replace(contact_wire=wire)), settings)
+        (run,) = line.run([plan_run(line.shape, [head], SPEED, None, settings, short=short)])
+        assert isinstance(run, cf.Run)
+        run.summary()
+    return time.process_time() - begin
+
+
+def elasticity(shape: cf.Shape) -> float:
+    """[s] of processor time for the elasticity of all spans, at the points of the command."""
+    begin = time.process_time()
+    cf.elasticity(shape, spans=range(1, len(shape.catenary.spans) + 1))
     return time.process_time() - begin
 
 
@@ -170,15 +189,23 @@ def main() -> None:
             parts = parallel(delayed(sweep_worker)(CASES_A_CORE) for _ in range(cores))
             wall = max(wall, sum(p[0] for p in parts) / (time.perf_counter() - begin))
             processor = max(processor, sum(simulated / used for simulated, used in parts))
-        begin, each = time.perf_counter(), 5
-        parallel(delayed(design_worker)(each, each * n) for n in range(cores))
-        minute = 60 * cores * each / (time.perf_counter() - begin)
-    found |= {"sweep_real_time_factor": wall, "designs_per_minute": minute}
+        minutes = {}
+        for number, (name, given) in enumerate(DESIGNS.items()):
+            parallel(delayed(design_worker)(1, 0, *given[1:]) for _ in range(4 * cores))
+            begin, each = time.perf_counter(), 10
+            parallel(
+                delayed(design_worker)(each, each * (number * cores + n), *given[1:]) for n in range(cores)
+            )
+            minutes[name] = 60 * cores * each / (time.perf_counter() - begin)
+    long = cf.find_form(reference_line(20))
+    found |= {"sweep_real_time_factor": wall, "elasticity_20_spans_s": elasticity(long)} | minutes
     if options.json:
         print(json.dumps(found, indent=1))
         return
     print(f"{f'batched sweep on {cores} cores':44s} {wall:8.2f} {processor:10.2f}")
-    print(f"{f'designs a minute on {cores} cores':44s} {minute:8.1f}")
+    print(f"{'elasticity of 20 spans, seconds':44s} {'':8s} {found['elasticity_20_spans_s']:10.2f}")
+    for name, given in DESIGNS.items():
+        print(f"{given[0]:44s} {minutes[name]:8.1f}")
 
 
 def _setup(catenary: cf.Catenary) -> tuple[float, float]:

@@ -42,9 +42,15 @@ def by_elements(stiffness: Any, at: Integers, tensions: Integers) -> tuple[Float
     found = order[np.minimum(np.searchsorted(here, taken, sorter=order), order.size - 1)]
     values = np.zeros(key.size)
     values[first] = np.where(here[found] == taken, whole.data[found], 0.0)
-    left = ~(np.isin(here, taken) | np.isin(there, taken))
+    left = ~(_among(here, taken) | _among(there, taken))
     rest = csr_matrix((whole.data[left], (whole.row[left], whole.col[left])), shape=whole.shape)
     return values.reshape(row.shape), rest
+
+
+def _among(values: Integers, ordered: Integers) -> Any:
+    """Which of the values are among ordered ones."""
+    found: Any = ordered[np.minimum(np.searchsorted(ordered, values), ordered.size - 1)] == values
+    return found
 
 
 @compiled
