@@ -13,7 +13,15 @@ import click
 from catenary_fe.cli import options
 from catenary_fe.cli.design import write_schedules
 from catenary_fe.cli.folder import PARTIAL, Folder, InputFiles, output_folder, read_record
-from catenary_fe.cli.terminal import Answer, print_table, progress_bar, say, static_shape, working
+from catenary_fe.cli.terminal import (
+    Answer,
+    print_table,
+    progress_bar,
+    said_of_compilation,
+    say,
+    static_shape,
+    working,
+)
 from catenary_fe.cli.verdicts import evaluated, exit_code, with_elasticity
 from catenary_fe.layout import (
     InputError,
@@ -218,6 +226,7 @@ def _print_summary(title: str, summary: dict[str, Any]) -> None:
     click.echo(
         f"{summary['simulated_s']:.2f} s simulated in {summary['wall_s']:.1f} s,"
         f" {summary['real_time_factor']:.2f} of real time"
+        f"{said_of_compilation()}"
     )
 
 

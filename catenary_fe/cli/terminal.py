@@ -142,6 +142,14 @@ def progress_lines(text: str, every: float = 30.0) -> Callable[[float], None]:
     return say
 
 
+def said_of_compilation() -> str:
+    """Words on the time that this process has compiled; none where that was a moment."""
+    from catenary_fe.engines.compiled import compilation
+
+    seconds = compilation.seconds
+    return f"; before that, compiled for {seconds:.0f} s, once on this machine" if seconds > 1 else ""
+
+
 @contextmanager
 def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | None]:
     """A progress bar with the time left on standard error; where that is not a terminal, occasional lines."""
@@ -154,10 +162,16 @@ def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | N
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+    from catenary_fe.engines.compiled import compilation
+
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task(text, total=1.0)
-        yield lambda share: bars.update(task, completed=share)
+        compilation.told = lambda: bars.print("compiling, once on this machine: some 20 s")
+        try:
+            yield lambda share: bars.update(task, completed=share)
+        finally:
+            compilation.told = None
 
 
 @contextmanager

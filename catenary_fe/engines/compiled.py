@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -13,7 +14,43 @@ from typing import Any, TypeVar, cast
 from catenary_fe.results.files import own_temporary_folder
 
 numba: Any = import_module("numba")  # its types are not complete
+_event: Any = import_module("numba.core.event")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+class _Compilation(_event.Listener):  # type: ignore[misc]
+    """The time that this process has compiled; what is compiled within something else counts once.
+
+    seconds : [s]
+    told : called when it begins next, that once; unset: nothing is
+    """
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        self.told: Callable[[], None] | None = None
+        self._depth, self._begin = 0, 0.0
+
+    def on_start(self, event: Any) -> None:
+        if not self._depth:
+            self._begin = time.perf_counter()
+            told, self.told = self.told, None
+            if told:
+                told()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        self._depth -= 1
+        if not self._depth:
+            self.seconds += time.perf_counter() - self._begin
+
+
+compilation = _Compilation()
+_event.register("numba:compile", compilation)
+
+
+def run_clock() -> float:
+    """[s] from some moment on, which stands while code is compiled: that is no part of a run."""
+    return time.perf_counter() - compilation.seconds
 
 
 def compiled(function: _Function) -> _Function:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 
 from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.compiled import run_clock
 from catenary_fe.engines.history import History
 from catenary_fe.engines.settings import TimeSettings
 from catenary_fe.layout import AnyPantograph, CatenaryError, InputError, RunInterrupted
@@ -200,19 +200,19 @@ def _until_mean_force(
     steps = case.steps(time.step)
     if keeper:
         force.take_up(keeper)
-    begin = clock.perf_counter()
+    begin = run_clock()
     drive = set_up()
     while True:
         labelled = partial(label, force.uplifts)
         with kept_when_stopped(labelled, steps * time.step):
             run = labelled(drive(case, force.uplifts, progress, keeper))
-        run = Run(run.data, clock.perf_counter() - begin)
+        run = Run(run.data, run_clock() - begin)
         reached = force.reached(run)
         if keeper:
             keeper.remove() if reached else keeper.begin(force.state())
         if reached:
             return run
-        begin = clock.perf_counter()
+        begin = run_clock()
 
 
 def _engine(

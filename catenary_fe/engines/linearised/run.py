@@ -7,7 +7,6 @@ factorisation and advance side by side.
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from catenary_fe.engines.base import Progress, RunCase
+from catenary_fe.engines.compiled import run_clock
 from catenary_fe.engines.history import History
 from catenary_fe.engines.linearised.batch import BLOCK, Batch, most_slots
 from catenary_fe.engines.linearised.setup import Setup, set_up
@@ -115,10 +115,10 @@ class LinearisedEngine:
                     if self._begin(job, batch, slot):
                         active[slot] = job
             if active:
-                begin = clock.perf_counter()
+                begin = run_clock()
                 batch.advance(BLOCK)
                 for job in active.values():
-                    job.spent += (clock.perf_counter() - begin) / len(active)
+                    job.spent += (run_clock() - begin) / len(active)
             if progress:
                 reached = batch.pantographs.step
                 under_way = sum(min(reached[slot] / job.steps, 1.0) for slot, job in active.items())
@@ -135,7 +135,7 @@ class LinearisedEngine:
         return Sizes.of(placed, len(self.setup.model.contacts), steps, self._every)
 
     def _begin(self, job: _Job, batch: Batch, slot: int) -> bool:
-        begin, case = clock.perf_counter(), job.task.case
+        begin, case = run_clock(), job.task.case
         try:
             placed = case.placed(job.task.uplifts, self._system)
             placed = self._system.base_line.moving(placed, case.speed, self._time.step, job.steps)
@@ -144,7 +144,7 @@ class LinearisedEngine:
             job.task.failed(error)
             return False
         batch.load(slot, job.start, job.steps)
-        job.spent += clock.perf_counter() - begin
+        job.spent += run_clock() - begin
         return True
 
     def _finish(self, job: _Job, batch: Batch, slot: int) -> bool:
