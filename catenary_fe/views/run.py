@@ -231,7 +231,7 @@ def plot_dropper_forces(run: Run, *, ax: Axes | None = None) -> Axes:
     style.mark_supports(ax, run.data["support_position"].values)
     style.mark_spans(ax, run.data["support_position"].values, run.evaluated_spans)
     low, high = forces.min(axis=1), forces.max(axis=1)
-    ax.vlines(x, low, high, color=style.DROPPER, linewidth=min(2.0, 300 / x.size),
+    ax.vlines(x, low, high, color=style.DROPPER, linewidth=min(2.0, 300 / max(1, x.size)),
               label="range during the run")  # fmt: skip
     size = 6 if x.size < 200 else 3
     ax.plot(x, forces[:, 0], ".", color=style.MESSENGER, markersize=size, label="at the start")
