@@ -123,7 +123,7 @@ def _tensions(ax: Axes, shape: Shape, part: Stretch, design: Shape | None = None
     for name, colour, of_kind in _kinds(shape):
         mine = of_kind[chosen]
         if mine.any():
-            ax.vlines(x[mine], 0, forces[mine], color=colour, linewidth=min(1.6, 300 / max(1, x.size)), label=name)
+            ax.vlines(x[mine], 0, forces[mine], color=colour, linewidth=min(1.6, 300 / x.size), label=name)
             ax.plot(x[mine], forces[mine], ".", color=colour, markersize=4)
     ax.set_ylim(0, 1.45 * forces.max(initial=1.0))
     style.label_row(ax, x, forces, [f"{force:.0f}" for force in forces], above=3)
