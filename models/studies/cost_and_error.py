@@ -3,7 +3,7 @@
 Question: which element lengths, time step and engine give σ within 1 % of a converged computation at the
 least cost, on a plane line, a spatial one and one with stitch wires? Are the defaults among them?
 
-Run it with ``python models/studies/cost_and_error.py [FOLDER]``; it takes half an hour on one core and writes
+Run it with ``python models/studies/cost_and_error.py [FOLDER]``; it takes an hour on one core and writes
 ``cost_and_error.md``, ``.json`` and ``.png``. Times compare within the study only.
 """
 
@@ -125,6 +125,9 @@ def picture(results: dict[str, list[dict[str, Any]]], path: Path) -> None:
                     ax.loglog(cost, off, marker, color=colour, markersize=4, linewidth=0.8, label=label)
                 for r, x, y in zip(own, cost, off, strict=True):
                     style.annotate(ax, f"{r['step_ms']:g}", (x, y), (3, 3), fontsize=6)
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("")
         ax.axhline(1.0, color="#222222", linestyle="--", linewidth=0.9)
         style.finish(ax, "cost, of the default's", "error of σ (%)", f"{line}; numbers are steps in ms")
     panels[0].legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
