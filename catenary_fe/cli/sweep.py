@@ -287,7 +287,8 @@ def _cases(
 
 def _starts(line: Catenary, positions: tuple[float, ...], distance: float | None) -> tuple[float, ...]:
     """[m] of the pantographs; of two at a distance [m], the front one first."""
+    from catenary_fe.studies.checks import two_apart
+
     if distance is None:
         return positions
-    rear = positions[0] if positions else float(np.diff(line.support_positions).min()) / 6
-    return (rear + distance, rear)
+    return two_apart(line, distance, positions[0] if positions else None)

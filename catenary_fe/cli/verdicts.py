@@ -106,13 +106,7 @@ class Verdict:
             "values": self.values,
             "governing": self.governing,
             "criteria": [
-                row.as_dict()
-                | {
-                    "label": label,
-                    "used": row.used,
-                    "value_text": row.value_text,
-                    "limit_text": row.limit_text,
-                }
+                row.as_dict() | {"label": label, "used": _finite(row.used)}
                 for row, label in zip(self.criteria, labels(self.criteria), strict=True)
             ],
             "checks_failed": self.failed_checks,

@@ -170,10 +170,21 @@ def plan_run(
     return RunCase(runs, speed, start, distance, run_warnings(shape, pantographs, speed, start, time))
 
 
+def run_margin(catenary: Catenary) -> float:
+    """[m] from the line's ends within which no run starts or ends: where one pantograph alone does."""
+    return float(np.diff(catenary.support_positions).min()) / 6
+
+
+def two_apart(catenary: Catenary, distance: float, rear: float | None = None) -> tuple[float, float]:
+    """[m] where two pantographs start, the front one first; unset: the rear one where one alone does."""
+    rear = run_margin(catenary) if rear is None else rear
+    return rear + distance, rear
+
+
 def _route(catenary: Catenary, count: int, positions: Sequence[float] | None) -> tuple[Floats, float]:
     """[m] starts, and the distance that each pantograph runs; all pass the evaluated spans."""
     length, supports = catenary.length, catenary.support_positions
-    margin = float(np.diff(supports).min()) / 6
+    margin = run_margin(catenary)
     if positions is None:
         if count > 1:
             raise InputError(

@@ -17,6 +17,7 @@ from catenary_fe.results.check import Check
 from catenary_fe.results.quantities import FORCE, UPLIFT
 from catenary_fe.statics import LineShape, Shape, find_form, settle
 from catenary_fe.statics.elasticity import elasticity, solve_statics
+from catenary_fe.studies.checks import run_margin, two_apart
 from catenary_fe.studies.processes import manager_may_stumble, processes_of
 from catenary_fe.studies.reference_models import PANTOGRAPH, RANGES, InRange, in_ranges, reference_line
 from catenary_fe.studies.selfcheck import SelfCheck, selfcheck
@@ -57,8 +58,7 @@ class Asked:
     @property
     def cases(self) -> list[SweepCase]:
         """One and two pantographs at each speed; the rear one starts where one alone does."""
-        rear = float(np.diff(self.catenary.support_positions).min()) / 6
-        starts = {1: (rear,), 2: (rear + self.distance, rear)}
+        starts = {1: (run_margin(self.catenary),), 2: two_apart(self.catenary, self.distance)}
         return [
             SweepCase(
                 values={"speed_kmh": speed, "pantographs": count},
@@ -189,7 +189,8 @@ class Conformity:
             if failed := run.summary.get("checks_failed"):
                 said += f"; checks of the run failed: {', '.join(failed)}"
             passed = not run.error and not run.missed
-            rows.append(_verdict(run.title, said, passed, f"runs/{run.name}/summary.json"))
+            file = "conform.json" if run.error else f"runs/{run.name}/summary.json"
+            rows.append(_verdict(run.title, said, passed, file))
         said = "the same verdicts" if self.verdict_stays else "verdicts differ, or a run failed"
         rows.append(_verdict("elements halved, steps halved", said, self.verdict_stays, "refined.csv"))
         return rows

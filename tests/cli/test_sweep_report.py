@@ -8,6 +8,7 @@ import pytest
 
 import catenary_fe as cf
 from catenary_fe.cli.main import main
+from catenary_fe.cli.verdicts import Verdict
 
 COARSE = ["--time-step-ms", "2", "--element-m", "4", "--jobs", "1"]
 
@@ -80,3 +81,12 @@ def test_a_damaged_record_and_options_of_single_runs_are_refused(folder, tmp_pat
     (tmp_path / "sweep.json").write_text('{"title": "x"}')
     assert main(["report", str(tmp_path)]) == 3
     assert "sweep.json: damaged, or of another version" in capsys.readouterr().err
+
+
+def test_a_limit_without_any_margin_can_be_written():
+    """No share of it is a number: JSON would refuse it, and the sweep end in a traceback."""
+    row = cf.Criterion(name="mean force", unit="N", source="", value=-1.0, relation="at least", limit=60.0)
+    assert row.used == float("inf")
+    made = Verdict({"speed_kmh": 200.0}, criteria=[row]).as_dict()
+    json.dumps(made, allow_nan=False)
+    assert made["criteria"][0]["used"] > 1
