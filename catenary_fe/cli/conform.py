@@ -15,9 +15,11 @@ import click
 
 from catenary_fe.cli import options
 from catenary_fe.cli.design import elasticity_table, write_schedules
-from catenary_fe.cli.folder import InputFiles, keep_file, output_folder
+from catenary_fe.cli.folder import InputFiles, output_folder
 from catenary_fe.cli.line_test import TestOptions, compare_line_test
 from catenary_fe.cli.sweep import kept
+from catenary_fe.cli.sweep_report import report_run
+from catenary_fe.cli.sweep_table import keep_run
 from catenary_fe.cli.terminal import Answer, print_json, print_table, progress_bar, working
 from catenary_fe.layout import PowerSystem, load_pantograph
 from catenary_fe.layout.rules import layout_warnings
@@ -168,6 +170,7 @@ def _keep_inputs(
 
 
 def _write(output: str, found: Conformity, shape: Shape, record: dict[str, Any]) -> None:
+    from catenary_fe.results import load_run
     from catenary_fe.studies.conform import slug
     from catenary_fe.views.report import conformity_page
 
@@ -175,10 +178,13 @@ def _write(output: str, found: Conformity, shape: Shape, record: dict[str, Any])
     places |= {f"refined/{slug(name)}": run for name, run in found.refined.items() if run not in found.runs}
     for place, run in places.items():
         if not run.error:
-            _keep_run(Path(output, place), run.file, run.summary | _criteria(found, run))
+            keep_run(Path(output, place), run.file, run.summary | _criteria(found, run))
+            report_run(Path(output, place))
     for speed, file in found.reference.items():
         if file:
-            _keep_run(Path(output, "reference", f"{speed}_kmh"), file, None)
+            place = str(Path("reference", f"{speed}_kmh"))
+            keep_run(Path(output, place), file, load_run(file).summary())
+            report_run(Path(output, place))
     _write_static(str(Path(output) / "static"), found, shape, record["warnings"])
     with output_folder(output) as folder:
         assert folder is not None
@@ -199,21 +205,6 @@ def _criteria(found: Conformity, run: JudgedRun) -> dict[str, Any]:
         "criteria_system": found.asked.system,
         "criteria": [row.as_dict() for row in run.criteria],
     }
-
-
-def _keep_run(target: Path, file: str, summary: dict[str, Any] | None) -> None:
-    """A folder as of a run, with its report; its file is there once, under two names."""
-    from catenary_fe.results import load_run
-    from catenary_fe.studies.rerun import shape_of
-    from catenary_fe.views.report import report_page
-
-    run = load_run(file)
-    with output_folder(str(target)) as folder:
-        assert folder is not None
-        keep_file(file, folder.path / "run.nc")
-        folder.json("summary.json", summary or run.summary())
-        system = (summary or {}).get("criteria_system", "AC")
-        folder.text("report.html", report_page(run, shape_of(run), system=system))
 
 
 def _write_static(output: str, found: Conformity, shape: Shape, warnings: Sequence[str]) -> None:

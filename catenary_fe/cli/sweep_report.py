@@ -40,7 +40,7 @@ def report_sweep(folder: str, output: str | None, quiet: bool) -> None:
         ) from None
     with progress_bar(f"{len(runs)} runs", bool(runs) and not quiet) as progress:
         for n, run in enumerate(runs, start=1):
-            _report_run(run)
+            report_run(run)
             if progress:
                 progress(n / len(runs))
     write_text(target, page)
@@ -49,7 +49,8 @@ def report_sweep(folder: str, output: str | None, quiet: bool) -> None:
         click.echo(f"{target}: {target.stat().st_size / 1e6:.1f} MB{beside}")
 
 
-def _report_run(folder: Path) -> None:
+def report_run(folder: Path) -> None:
+    """Write the page of a kept run into its folder, judged as its summary says."""
     from catenary_fe.studies.rerun import shape_of
     from catenary_fe.views.report import report_page
 

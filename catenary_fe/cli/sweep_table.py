@@ -118,7 +118,9 @@ def write_sweep(
         _pictures(folder, rows, made["axes"])
     for case, record in zip(made["cases"], records, strict=True):
         if case["run"]:
-            _keep_run(Path(output, case["run"]), record, made, case)
+            system = made["criteria_system"]
+            judged = {"criteria_system": system, "criteria": case["criteria"]} if system else {}
+            keep_run(Path(output, case["run"]), record["run"], record["summary"] | judged)
 
 
 def _pictures(folder: Folder, rows: Sequence[Mapping[str, Any]], axes: Mapping[str, Sequence[Any]]) -> None:
@@ -132,14 +134,12 @@ def _pictures(folder: Folder, rows: Sequence[Mapping[str, Any]], axes: Mapping[s
         folder.picture("support_uplift.png", views.plot_sweep_uplift(good, x, by))
 
 
-def _keep_run(target: Path, record: Record, made: Mapping[str, Any], case: Mapping[str, Any]) -> None:
+def keep_run(target: Path, file: str, summary: Mapping[str, Any]) -> None:
     """A folder as of a run, with what its report needs; the run's file is there once, under two names."""
-    system = made["criteria_system"]
-    judged = {"criteria_system": system, "criteria": case["criteria"]} if system else {}
     with output_folder(str(target)) as folder:
         assert folder is not None
-        folder.json("summary.json", record["summary"] | judged)
-        keep_file(record["run"], folder.path / "run.nc")
+        folder.json("summary.json", summary)
+        keep_file(file, folder.path / "run.nc")
         folder.forget("report.html")
 
 

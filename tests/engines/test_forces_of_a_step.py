@@ -395,7 +395,7 @@ class Dropper:
 
     def relaxed(self):
         """Its spring's and damper's force after having been brought to its law."""
-        wires = self.slots.wires
-        change = entry(update_dropper)(self.scheme, self.line, wires, self.slots.work, 0, self.i)
+        wires, work = self.slots.wires, self.slots.work
+        change = entry(update_dropper)(self.scheme, self.line, wires, work, 0, self.i)
         feel(wires, self.line.dropper_compliance, [change], self.i)
         return tuple(force + c * self.taken for force, c in zip(self._at, self.gives, strict=True))
