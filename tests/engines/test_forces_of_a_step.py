@@ -125,9 +125,8 @@ def take(setup, slots):
         State(q + b * x, v + g * x, x.copy())
         for (q, v, _), x in zip(before, (wires.x[:, 0], heads.x[0]), strict=True)
     ]
-    return Step(
-        before, *ends, last, tension, work.force[0].copy(), work.slack[0].copy(), work.arm_force[0].copy()
-    )
+    forces = (array[0].copy() for array in (work.force, work.slack, work.arm_force))
+    return Step(before, *ends, last, tension, *forces)
 
 
 def travel(setup, pantographs, places, every, slackening=1.0):
