@@ -167,7 +167,7 @@ def progress_bar(text: str, shown: bool) -> Iterator[Callable[[float], None] | N
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task(text, total=1.0)
-        compilation.told = lambda: bars.print("compiling, once on this machine: some 20 s")
+        compilation.told = lambda: bars.print("compiling, once on this machine: up to half a minute")
         try:
             yield lambda share: bars.update(task, completed=share)
         finally:
