@@ -61,6 +61,11 @@ def compiled(function: _Function) -> _Function:
     return _compiled(function, keep=False)
 
 
+def apart(function: _Function) -> _Function:
+    """Likewise, for what works so long that a call costs nothing beside it: no part of those that call it."""
+    return _compiled(function, keep=False, inline=False)
+
+
 def plain(function: _Function) -> _Function:
     """The Python function behind a compiled one."""
     return cast(_Function, getattr(function, "py_func", function))
@@ -82,10 +87,10 @@ def stamp(*modules: ModuleType) -> str:
     return hashlib.sha256("".join(map(inspect.getsource, modules)).encode()).hexdigest()
 
 
-def _compiled(function: _Function, keep: bool) -> _Function:
+def _compiled(function: _Function, keep: bool, inline: bool = True) -> _Function:
     # to unpack Python arguments takes longer to compile than most functions that only others call, and to
     # hand over tuples of twenty arrays takes longer than what many of them do
-    inner = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    inner = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": inline}
     options = {} if keep else inner
     # the caller holds all arrays and nothing is allocated: to count who refers to each takes a fifth of the
     # time to compile, and in contacts nine tenths of that to run

@@ -56,8 +56,11 @@ def packed_rows(matrix: Any, *, backward: bool = False, even: bool = False) -> P
     return PackedRows(start.astype(np.uint32), index.astype(np.uint32), values)
 
 
-def packed_factor(factor: Any) -> PackedFactor:
-    """A symmetric matrix as (I + V)ᵀ S⁻¹ (I + V), see :class:`PackedFactor`."""
+def packed_factor(factor: Any, *, single: bool = False) -> PackedFactor:
+    """A symmetric matrix as (I + V)ᵀ S⁻¹ (I + V), see :class:`PackedFactor`.
+
+    single : V in single precision, for solutions that are iterated: half as much to read
+    """
     from scipy.sparse import bsr_matrix
 
     upper = factor.L.T.tocoo()
@@ -72,8 +75,7 @@ def packed_factor(factor: Any) -> PackedFactor:
     V = bsr_matrix((inverse, groups[:-1], groups), shape=upper.shape).tocsr() @ upper.tocsr()
     scaled = inverse / factor.U.diagonal().reshape(-1, 1, 4)
     S = np.einsum("nij,nkj->nik", scaled, inverse)
-    return PackedFactor(
-        lower=packed_rows(V.T, even=True),
-        upper=packed_rows(V, backward=True, even=True),
-        inner=S[:, *np.triu_indices(4)],
-    )
+    lower, upper = packed_rows(V.T, even=True), packed_rows(V, backward=True, even=True)
+    if single:
+        lower, upper = (rows._replace(value=rows.value.astype(np.float32)) for rows in (lower, upper))
+    return PackedFactor(lower, upper, inner=S[:, *np.triu_indices(4)])

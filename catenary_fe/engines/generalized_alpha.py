@@ -70,7 +70,7 @@ def advance(scheme: Scheme, q: Any, v: Any, c: Any, x: Any) -> tuple[Any, Any, A
 @compiled
 def predict(scheme: Scheme, beta: float, wires: Wires) -> None:
     """State of the next step in place; of any number of coordinates and slots that eight divides."""
-    for i in range(wires.x.size // SLOTS):
+    for i in range(0, wires.x.size, SLOTS):
         q, v, c = advance(
             scheme,
             load_eight(wires.q, i),

@@ -342,10 +342,15 @@ class System:
 
         β K is of the wires with their tension's stiffness; what supports and arms damp is given with them.
         """
+        rayleigh = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
+        return (rayleigh + self.other_damping).tocsr()
+
+    @property
+    def other_damping(self) -> Any:
+        """Likewise, of springs and what else is no wire."""
         from scipy.sparse import diags
 
-        rayleigh = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
-        return (rayleigh + diags(self.ground_damping) + self.linear_damping).tocsr()
+        return (diags(self.ground_damping) + self.linear_damping).tocsr()
 
     def elongations(self) -> Any:
         """Sparse, shape (droppers, all): each dropper's elongation with the coordinates, at rest."""

@@ -2,36 +2,34 @@
 
 import numpy as np
 import pytest
+from kernels import entry
 
 import catenary_fe as cf
 
 
-@pytest.mark.parametrize("axes", [2, 3])
-def test_element_forces_in_compiled_code(axes):
-    """At a state that is bent and stretched far more than a wire ever is."""
-    numba = pytest.importorskip("numba")
+@pytest.mark.parametrize("spatial", [False, True])
+def test_cables_in_compiled_code(spatial, plane_shape, curved_shape):
+    """Inner forces, inertia and damping of all elements, at a state far from rest, against matrices."""
+    from catenary_fe.engines.nonlinear.cables import Room
+    from catenary_fe.engines.nonlinear.forces import damp_cables, take_cables
+    from catenary_fe.engines.nonlinear.setup import Parameters
+    from catenary_fe.engines.nonlinear.state import Motion
+    from catenary_fe.fe.cable import inner_forces
 
-    from catenary_fe.engines.nonlinear.cables import Elements, take_cables
-    from catenary_fe.fe.cable import Cables, inner_forces
-
-    @numba.njit
-    def inner(axes, elements, total, forces):
-        take_cables(axes, elements, total, forces)
-
-    one, lengths = np.ones(3), np.array([0.5, 0.8, 1.3])
-    nodes = np.zeros((4, 2, axes))
-    nodes[1:, 0, 0], nodes[:, 1, 0] = np.cumsum(lengths), 1.0
-    nodes += 0.05 * np.random.default_rng(1).normal(size=nodes.shape)
-    cables = Cables(lengths, 17e6 * one, 195.0 * one, -20e3 / 17e6 * one)
-    expected = np.zeros_like(nodes)
-    for i, force in enumerate(inner_forces(cables, np.concatenate([nodes[:-1], nodes[1:]], axis=1))):
-        expected[i : i + 2] -= force.reshape(2, 2, axes)
-    forces, strain = np.zeros(nodes.size), cables.rest_strain
-    elements = Elements(
-        2 * axes * np.arange(3), lengths, cables.axial_stiffness, cables.bending_stiffness, 1 + strain
-    )
-    inner(axes, elements, nodes.ravel(), forces)
-    assert forces == pytest.approx(expected.ravel(), abs=1e-9 * abs(expected).max())
+    system = (curved_shape if spatial else plane_shape).system
+    rows, size = Parameters(system).rows, system.size
+    q, v, x = np.random.default_rng(1).normal(size=(3, size)) * np.array([[0.01], [1.0], [10.0]])
+    total = system.reference + system.spread(q)
+    inner = inner_forces(system.cables, total[system.elements()].reshape(-1, 4, system.axes))
+    forces = np.bincount(system.elements().ravel(), inner.ravel(), minlength=total.size)
+    lost = system.free(system.damping() - system.other_damping) @ v
+    expected = -system.gather(forces) - system.free(system.wire_mass) @ x - lost
+    motion = Motion(*(rows.spread(a) for a in (q, v, 0 * q, 0 * q)), Room.of(system.axes))
+    found, damped = np.zeros((2, rows.size))
+    entry(take_cables)(Parameters(system).equations, motion, rows.spread(x), found)
+    entry(damp_cables)(Parameters(system).equations, motion, damped)
+    assert found[rows.place] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
+    assert damped[rows.place] == pytest.approx(-lost, abs=1e-10 * np.abs(lost).max())
 
 
 def test_parts_of_steps_help_where_whole_ones_do_not_converge(short_shape, pantograph):

@@ -1,17 +1,25 @@
-"""Arrays of a compiled nonlinear run. "All" coordinates are those of the wires' nodes; "free" ones move."""
+"""Arrays of a compiled nonlinear run. "All" coordinates are those of the wires' nodes; "free" ones move.
+
+All coordinates stand by what they are, shape (2 axes, nodes): places along each axis, then slopes.
+"""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from catenary_fe.engines.arrays import CsrRows, Floats, Integers, PackedFactor, PackedRows, Surfaces
-from catenary_fe.engines.nonlinear.cables import Elements
+from catenary_fe.engines.nonlinear.cables import Elements, Room
+
+Numbers = NDArray[np.int32]  # half as much to read
 
 
 class SpringArrays(NamedTuple):
     """Springs between points of the wires (droppers), or between them and fixed points (links).
 
-    first, last : numbers of the first coordinates, among all, of the points; ``last`` of links has no use
+    first, last : numbers of the points' nodes; ``last`` of links has no use
     pivot : [m], shape (springs, axes), fixed points of links
     length, k, d : [m], [N/m], [N s/m], shape (springs,)
     """
@@ -27,14 +35,15 @@ class SpringArrays(NamedTuple):
 class Equations(NamedTuple):
     """Equations of motion, see :class:`~catenary_fe.fe.system.System`.
 
-    reference, dof : shape (all,)
+    reference, dof : shape (2 axes, places), the latter the number of the free coordinate, or FIXED; there are
+        eight places more than elements have, at least as many as nodes
     force : shape (free,)
     patterns : [N], rows of the free coordinates, of loads that vary in time
-    stiffness, mass, damping : over the free coordinates, the stiffness of linear springs
+    stiffness, mass, damping : over the free coordinates, of what is not a cable and linear
     """
 
     reference: Floats
-    dof: Integers
+    dof: Numbers
     elements: Elements
     droppers: SpringArrays
     links: SpringArrays
@@ -52,8 +61,8 @@ class Stations(NamedTuple):
     x, lengths : [m], shape (nodes,)
     profile, lateral : shape (nodes, 2), height and slope of the reference, likewise to the left
     at, across : shape (nodes, 2), free coordinates of height and slope, and likewise to the left
-    left : shape (nodes, 2), of those to the left the numbers among all coordinates; in the plane no rows
-    supports : shape (contact wires * supports,), numbers of heights among all coordinates; FIXED: not here
+    node : shape (nodes,), numbers among the nodes of all wires
+    supports : shape (contact wires * supports,), likewise; FIXED: not here
     heights : shape (nodes of all wires,), likewise
     surfaces : of the contact wires
     rest : [m], shape (nodes of all wires,), heights that uplifts count from
@@ -67,7 +76,7 @@ class Stations(NamedTuple):
     lateral: Floats
     at: Integers
     across: Integers
-    left: Integers
+    node: Integers
     supports: Integers
     heights: Integers
     surfaces: Surfaces
@@ -89,15 +98,14 @@ class Motion(NamedTuple):
     """State at a step's end as it is iterated.
 
     q, v, residual, before : shape (free,), the last one of x
-    total, inner : shape (all,), positions and slopes, forces
+    room : for what elements need
     """
 
     q: Floats
     v: Floats
     residual: Floats
     before: Floats
-    total: Floats
-    inner: Floats
+    room: Room
 
 
 class EnergyBalance(NamedTuple):

@@ -1,30 +1,83 @@
-"""Forces of ANCF cable elements, in the plane and in space.
+"""Forces of ANCF cable elements, in the plane and in space, eight elements at a time.
 
 The elements are Exudyn's (Gerstmayr and Irschik 2008): cubic positions r, axial strain ε = |r'| - 1,
 curvature κ = |r' × r''| / |r'|². Four Gauss points integrate axial forces, two bending moments.
-Tuples of one axis hold r' at the six points, then L r'' at the last two.
+Tuples of one axis hold r' at the six points, then L r'' at the last two. Mass and damping go with the
+elements: as matrices of the line they would be so large that reading them took longer than the rest.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from catenary_fe.engines.arrays import Floats, Integers
+from catenary_fe.engines.arrays import SLOTS, Floats, Integers
 from catenary_fe.engines.compiled import compiled
+from catenary_fe.engines.lanes import load_eight, root, store_eight
 
-Tuple = tuple[float, ...]
+Tuple = tuple[Any, ...]
+TINY = 1e-60  # added to |r'|²: places without an element have no r'
 
 
 class Elements(NamedTuple):
-    """Cable elements: number of the first coordinate, length L, EA, EI, and 1 + strain without force."""
+    """Cable elements by the numbers of their first nodes, shape (places,) each, a multiple of eight.
 
-    first: Integers
+    None begins at the last node of a wire: there EA, EI and mass are 0, and the length is 1.
+
+    length, mass : [m], [kg]
+    axial, bending, rest : EA, EI, and 1 + strain without force
+    damping : shape (entries, places), β K at rest over chord / L and both slopes, each with all axes: row by
+        row up to the diagonal; no entries without such damping
+    alpha : [1/s], damping by mass
+    """
+
     length: Floats
+    mass: Floats
     axial: Floats
     bending: Floats
     rest: Floats
+    damping: Floats
+    alpha: float
+
+    @classmethod
+    def by_node(cls, nodes: Integers, alpha: float, **arrays: Floats) -> Elements:
+        """From arrays of shape (..., elements), and the numbers of the elements' first nodes."""
+        places, found = -(-(int(nodes[-1]) + 2) // SLOTS) * SLOTS, {}
+        for name, values in arrays.items():
+            found[name] = np.full((*values.shape[:-1], places), 1.0 if name == "length" else 0.0)
+            found[name][..., nodes] = values
+        return cls(**found, alpha=alpha)
+
+    def at(self, nodes: Integers) -> Elements:
+        """Those that begin at some of the nodes, of whole wires, numbered anew."""
+        arrays = {name: array[..., nodes] for name, array in self._asdict().items() if name != "alpha"}
+        return self.by_node(np.arange(nodes.size), self.alpha, **arrays)
+
+    def placed(self, values: NDArray[Any], nothing: float = 0.0) -> NDArray[Any]:
+        """Values of shape (..., nodes) with places for the elements behind the last node, and eight more."""
+        room = np.full((len(values), self.length.size + SLOTS - values.shape[1]), nothing, values.dtype)
+        return np.ascontiguousarray(np.hstack([values, room]))
+
+
+class Room(NamedTuple):
+    """What is known of eight elements, shape (axes * values, SLOTS) each.
+
+    points : see :func:`points_of`
+    rates : of positions and slopes at both ends
+    parts, pulls : rates of chord / L and both slopes, in the order of ``Elements.damping``; damping on these
+    """
+
+    points: Floats
+    rates: Floats
+    parts: Floats
+    pulls: Floats
+
+    @classmethod
+    def of(cls, axes: int) -> Room:
+        """Room."""
+        return cls(*(np.zeros((axes * count, SLOTS)) for count in (8, 4, 3, 3)))
 
 
 def _gauss(count: int) -> tuple[Tuple, ...]:
@@ -41,7 +94,7 @@ _B_SHARE, _B_CHORD, _B_FIRST, _B_LAST, _C_CHORD, _C_FIRST, _C_LAST = _gauss(2)
 
 
 @compiled
-def _at_points(chord: float, first: float, last: float) -> Tuple:
+def _at_points(chord: Any, first: Any, last: Any) -> Tuple:
     """r' and L r'' of one axis."""
     return (
         _CHORD[0] * chord + _FIRST[0] * first + _LAST[0] * last,
@@ -73,7 +126,7 @@ def _products(r: Tuple) -> Tuple:
 
 
 @compiled
-def _plus(a: Tuple, b: Tuple) -> Tuple:
+def plus(a: Tuple, b: Tuple) -> Tuple:
     return (
         a[0] + b[0],
         a[1] + b[1],
@@ -89,29 +142,29 @@ def _plus(a: Tuple, b: Tuple) -> Tuple:
 
 
 @compiled
-def _bend(stiffness: float, g: float, bb: float, ab: float) -> Tuple:
+def _bend(stiffness: Any, g: Any, bb: Any, ab: Any) -> Tuple:
     """Moment's work on r' per r' and per L r'', and on L r'' per L r'', from ½ EI κ²."""
-    inverse = 1 / g
+    inverse = 1.0 / g
     along = ab * inverse
     curved = (bb - ab * along) * inverse  # (L κ)² |r'|⁰
     return (
-        stiffness * inverse * (bb * inverse - 2 * curved),
-        -stiffness * along * inverse,
+        stiffness * inverse * (bb * inverse - 2.0 * curved),
+        -1.0 * stiffness * along * inverse,
         stiffness * inverse,
     )
 
 
 @compiled
-def _factors(L: float, EA: float, EI: float, rest: float, p: Tuple) -> Tuple:
+def _factors(L: Any, EA: Any, EI: Any, rest: Any, p: Tuple) -> Tuple:
     """Force on r' per r' at the axial points, then of each bending point its three factors."""
     n, m = EA * L, EI / L
-    a, b, c = _bend(_B_SHARE[0] * m, p[4], p[6], p[8])
-    d, e, f = _bend(_B_SHARE[1] * m, p[5], p[7], p[9])
+    a, b, c = _bend(_B_SHARE[0] * m, p[4] + TINY, p[6], p[8])
+    d, e, f = _bend(_B_SHARE[1] * m, p[5] + TINY, p[7], p[9])
     return (
-        _SHARE[0] * n * (1 - rest / np.sqrt(p[0])),
-        _SHARE[1] * n * (1 - rest / np.sqrt(p[1])),
-        _SHARE[2] * n * (1 - rest / np.sqrt(p[2])),
-        _SHARE[3] * n * (1 - rest / np.sqrt(p[3])),
+        _SHARE[0] * n * (1.0 - rest / root(p[0] + TINY)),
+        _SHARE[1] * n * (1.0 - rest / root(p[1] + TINY)),
+        _SHARE[2] * n * (1.0 - rest / root(p[2] + TINY)),
+        _SHARE[3] * n * (1.0 - rest / root(p[3] + TINY)),
         a,
         b,
         c,
@@ -122,7 +175,7 @@ def _factors(L: float, EA: float, EI: float, rest: float, p: Tuple) -> Tuple:
 
 
 @compiled
-def _generalised(r: Tuple, k: Tuple) -> tuple[float, float, float]:
+def _generalised(r: Tuple, k: Tuple) -> tuple[Any, Any, Any]:
     """Forces of one axis that work on chord / L and on the two slopes."""
     a, b, c, d = k[0] * r[0], k[1] * r[1], k[2] * r[2], k[3] * r[3]
     e, f = k[4] * r[4] + k[5] * r[6], k[7] * r[5] + k[8] * r[7]
@@ -138,48 +191,110 @@ def _generalised(r: Tuple, k: Tuple) -> tuple[float, float, float]:
 
 
 @compiled
-def _axis(X: Floats, i: int, axes: int, L: float) -> Tuple:
-    """Points of an element's axis whose first coordinate has the number i."""
-    return _at_points((X[i + 2 * axes] - X[i]) / L, X[i + axes], X[i + 3 * axes])
+def points_of(elements: Elements, room: Room, e: int, axis: int, ends: Tuple) -> Tuple:
+    """Keep r' and L r'' of an axis of eight elements from number e on; returns its part of their products.
+
+    ends : positions and slopes at both ends
+    """
+    r = _at_points((ends[2] - ends[0]) / load_eight(elements.length, e), ends[1], ends[3])
+    P, i = room.points, 8 * SLOTS * axis
+    store_eight(P, i, r[0])
+    store_eight(P, i + SLOTS, r[1])
+    store_eight(P, i + 2 * SLOTS, r[2])
+    store_eight(P, i + 3 * SLOTS, r[3])
+    i += 4 * SLOTS
+    store_eight(P, i, r[4])
+    store_eight(P, i + SLOTS, r[5])
+    store_eight(P, i + 2 * SLOTS, r[6])
+    store_eight(P, i + 3 * SLOTS, r[7])
+    return _products(r)
 
 
 @compiled
-def _take(F: Floats, i: int, axes: int, L: float, r: Tuple, k: Tuple) -> None:
-    """Take an element's forces of one axis off F."""
-    chord, first, last = _generalised(r, k)
-    F[i] += chord / L
-    F[i + axes] -= first
-    F[i + 2 * axes] -= chord / L
-    F[i + 3 * axes] -= last
+def nothing(elements: Elements) -> Tuple:
+    """No products yet."""
+    z = 0.0 * load_eight(elements.length, 0)
+    return z, z, z, z, z, z, z, z, z, z
 
 
 @compiled
-def take_cables(axes: int, elements: Elements, X: Floats, F: Floats) -> None:
-    """Take the elements' inner forces at the coordinates X off F; both of shape (all coordinates,)."""
-    if axes == 2:
-        _take_in_plane(elements, X, F)
-    else:
-        _take_in_space(elements, X, F)
+def inner_forces(room: Room, axis: int, factors: Tuple) -> tuple[Any, Any, Any]:
+    """Forces of one axis that work on chord / L and the two slopes, by :func:`factors_of` the elements."""
+    P, i = room.points, 8 * SLOTS * axis
+    first = (
+        load_eight(P, i),
+        load_eight(P, i + SLOTS),
+        load_eight(P, i + 2 * SLOTS),
+        load_eight(P, i + 3 * SLOTS),
+    )
+    i += 4 * SLOTS
+    last = (
+        load_eight(P, i),
+        load_eight(P, i + SLOTS),
+        load_eight(P, i + 2 * SLOTS),
+        load_eight(P, i + 3 * SLOTS),
+    )
+    return _generalised((*first, *last), factors)
 
 
 @compiled
-def _take_in_plane(elements: Elements, X: Floats, F: Floats) -> None:
-    for e in range(elements.first.size):
-        i, L = elements.first[e], elements.length[e]
-        x, z = _axis(X, i, 2, L), _axis(X, i + 1, 2, L)
-        p = _plus(_products(x), _products(z))
-        k = _factors(L, elements.axial[e], elements.bending[e], elements.rest[e], p)
-        _take(F, i, 2, L, x, k)
-        _take(F, i + 1, 2, L, z, k)
+def factors_of(elements: Elements, e: int, p: Tuple) -> Tuple:
+    """Of eight elements, from the sums of their axes' products."""
+    EA, EI = load_eight(elements.axial, e), load_eight(elements.bending, e)
+    return _factors(load_eight(elements.length, e), EA, EI, load_eight(elements.rest, e), p)
 
 
 @compiled
-def _take_in_space(elements: Elements, X: Floats, F: Floats) -> None:
-    for e in range(elements.first.size):
-        i, L = elements.first[e], elements.length[e]
-        x, y, z = _axis(X, i, 3, L), _axis(X, i + 1, 3, L), _axis(X, i + 2, 3, L)
-        p = _plus(_plus(_products(x), _products(y)), _products(z))
-        k = _factors(L, elements.axial[e], elements.bending[e], elements.rest[e], p)
-        _take(F, i, 3, L, x, k)
-        _take(F, i + 1, 3, L, y, k)
-        _take(F, i + 2, 3, L, z, k)
+def rates_of(elements: Elements, room: Room, e: int, axis: int, ends: Tuple) -> None:
+    """Keep the rates of an axis, of positions and slopes at both ends."""
+    axes, i = room.rates.shape[0] // 4, 4 * SLOTS * axis
+    store_eight(room.rates, i, ends[0])
+    store_eight(room.rates, i + SLOTS, ends[1])
+    store_eight(room.rates, i + 2 * SLOTS, ends[2])
+    store_eight(room.rates, i + 3 * SLOTS, ends[3])
+    store_eight(room.parts, SLOTS * axis, (ends[2] - ends[0]) / load_eight(elements.length, e))
+    store_eight(room.parts, SLOTS * (axes + axis), ends[1])
+    store_eight(room.parts, SLOTS * (2 * axes + axis), ends[3])
+
+
+@compiled
+def damp(elements: Elements, room: Room, e: int) -> None:
+    """From the rates' parts to the damping that works on them."""
+    places, parts, pulls, m = elements.length.size, room.parts, room.pulls, e
+    if elements.damping.shape[0] == 0:
+        return
+    for p in range(parts.shape[0]):
+        own = load_eight(parts, SLOTS * p)
+        pull = 0.0 * own
+        for q in range(p):
+            k = load_eight(elements.damping, m)
+            pull = pull + k * load_eight(parts, SLOTS * q)
+            store_eight(pulls, SLOTS * q, load_eight(pulls, SLOTS * q) + k * own)
+            m += places
+        store_eight(pulls, SLOTS * p, pull + load_eight(elements.damping, m) * own)
+        m += places
+
+
+@compiled
+def taken(
+    elements: Elements, room: Room, e: int, axis: int, inner: tuple[Any, Any, Any], speeding: Tuple
+) -> Tuple:
+    """What elements take from forces of one axis, on position and slope at their first and at their last nodes.
+
+    inner : forces that work on chord / L and the two slopes
+    speeding : accelerations of positions and slopes at both ends
+    """
+    axes, V, i, alpha = room.rates.shape[0] // 4, room.rates, 4 * SLOTS * axis, elements.alpha
+    L, c = load_eight(elements.length, e), load_eight(elements.mass, e) * (1 / 420)
+    y, s = speeding[0] + alpha * load_eight(V, i), (speeding[1] + alpha * load_eight(V, i + SLOTS)) * L
+    i += 2 * SLOTS
+    z, t = speeding[2] + alpha * load_eight(V, i), (speeding[3] + alpha * load_eight(V, i + SLOTS)) * L
+    push = (inner[0] + load_eight(room.pulls, SLOTS * axis)) / L
+    first = inner[1] + load_eight(room.pulls, SLOTS * (axes + axis))
+    last = inner[2] + load_eight(room.pulls, SLOTS * (2 * axes + axis))
+    return (
+        push - c * (156.0 * y + 22.0 * s + 54.0 * z - 13.0 * t),
+        -1.0 * first - c * L * (22.0 * y + 4.0 * s + 13.0 * z - 3.0 * t),
+        -1.0 * push - c * (54.0 * y + 13.0 * s + 156.0 * z - 22.0 * t),
+        c * L * (13.0 * y + 3.0 * s + 22.0 * z - 4.0 * t) - last,
+    )

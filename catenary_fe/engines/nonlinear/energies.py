@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from catenary_fe.engines.arrays import Floats, PantographParameters, PantographState, Wires, Work
-from catenary_fe.engines.compiled import compiled
+from catenary_fe.engines.compiled import apart, compiled
 from catenary_fe.engines.contact_solver import base_height, risen_base, surface_at
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.kernels import take
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Motion
+from catenary_fe.engines.nonlinear.forces import damp_cables
 from catenary_fe.engines.pantograph_laws import frame_at
 from catenary_fe.layout.bodies import DAMPER, FRAME, FRICTION
 
 
-@compiled
+@apart
 def add_energy(
     system: Equations,
     scheme: Scheme,
@@ -31,7 +32,8 @@ def add_energy(
         moved[i], energy.q[i] = q - energy.q[i], q
         motion.v[i] = wires.v[i, 0] + scheme.g * wires.x[i, 0]
     drag[:] = 0.0
-    take(system.damping, motion.v, drag)  # its negative
+    damp_cables(system, motion, drag)  # its negative
+    take(system.damping, motion.v, drag)
     for i in range(moved.size):
         lost += (energy.drag[i] - drag[i]) * moved[i] / 2
         energy.drag[i] = -drag[i]

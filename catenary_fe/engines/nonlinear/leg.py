@@ -18,10 +18,10 @@ from catenary_fe.engines.nonlinear.arrays import (
     SpringArrays,
     Stations,
 )
-from catenary_fe.engines.nonlinear.cables import Elements
 from catenary_fe.engines.nonlinear.setup import Parameters
 from catenary_fe.engines.nonlinear.state import State
 from catenary_fe.engines.sections import csr_part, factor_part, moved, packed_part
+from catenary_fe.fe.spring import FIXED
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -42,12 +42,10 @@ class Arrays(NamedTuple):
 class Leg:
     """A part of a line.
 
-    coordinates : numbers among all coordinates
     rows, droppers : where its free coordinates and droppers are among those of the line
     """
 
     sections: tuple[int, int]
-    coordinates: Integers
     rows: slice
     droppers: slice
     equations: Equations
@@ -57,22 +55,21 @@ class Leg:
     def of(cls, parameters: Parameters, sections: tuple[int, int]) -> Leg:
         """From the first section to before the last."""
         a, b = sections
-        section = parameters.system.section
-        coordinates = np.flatnonzero((section >= a) & (section < b))
-        place = np.full(section.size, -1)
-        place[coordinates] = np.arange(coordinates.size)
+        section = parameters.system.section[parameters.system.heights]
+        nodes = np.flatnonzero((section >= a) & (section < b))
+        place = np.full(section.size + 1, FIXED)
+        place[nodes] = np.arange(nodes.size)
         rows, droppers, links = (slice(int(starts[a]), int(starts[b])) for starts in parameters.parts)
         stations = parameters.stations
         return cls(
             sections,
-            coordinates,
             rows,
             droppers,
-            _equations(parameters.equations, coordinates, place, rows, droppers, links),
+            _equations(parameters.equations, nodes, place, rows, droppers, links),
             stations._replace(
                 at=moved(stations.at, rows.start, rows.stop),
                 across=moved(stations.across, rows.start, rows.stop),
-                left=place[stations.left],
+                node=place[stations.node],
                 supports=place[stations.supports],
                 heights=place[stations.heights],
             ),
@@ -84,7 +81,7 @@ class Leg:
         return Factor(factor_part(factor.packed, first, end), factor.window[self.rows])
 
     def arrays(self, state: State, records: Records) -> Arrays:
-        """Its part of the run: views, but for what :meth:`take_from` and :meth:`put_back` copy."""
+        """Its part of the run: views."""
         wires = Wires(*(array[self.rows] for array in state.wires))
         motion, slack, energy = state.motion, state.slack, state.energy
         return Arrays(
@@ -95,8 +92,7 @@ class Leg:
                 v=motion.v[self.rows],
                 residual=motion.residual[self.rows],
                 before=motion.before[self.rows],
-                total=motion.total[self.coordinates] if self._is_part(motion) else motion.total,
-                inner=motion.inner[self.coordinates],
+                room=motion.room,
             ),
             Slack(
                 lack=slack.lack[self.droppers],
@@ -116,19 +112,6 @@ class Leg:
             records._replace(droppers=records.droppers[:, self.droppers]),
         )
 
-    def _is_part(self, motion: Motion) -> bool:
-        return self.coordinates.size < motion.total.size
-
-    def take_from(self, state: State, arrays: Arrays) -> None:
-        """Read what is no view from the run, before steps."""
-        if self._is_part(state.motion):
-            np.take(state.motion.total, self.coordinates, out=arrays.motion.total)
-
-    def put_back(self, arrays: Arrays, state: State) -> None:
-        """Write it into the run, after them."""
-        if self._is_part(state.motion):
-            state.motion.total[self.coordinates] = arrays.motion.total
-
     def take_over(self, state: State, before: Leg) -> None:
         """Number anew what the energy balance keeps of contacts; compliances are found again."""
         at = state.energy.at
@@ -138,18 +121,17 @@ class Leg:
 
 def _equations(
     whole: Equations,
-    coordinates: Integers,
+    nodes: Integers,
     place: Integers,
     rows: slice,
     droppers: slice,
     links: slice,
 ) -> Equations:
-    first, end, elements = rows.start, rows.stop, whole.elements
-    mine = place[elements.first] >= 0
+    first, end, elements = rows.start, rows.stop, whole.elements.at(nodes)
     return Equations(
-        reference=whole.reference[coordinates],
-        dof=moved(whole.dof[coordinates], first, end),
-        elements=Elements(place[elements.first[mine]], *(array[mine] for array in elements[1:])),
+        reference=elements.placed(whole.reference[:, nodes]),
+        dof=elements.placed(moved(whole.dof[:, nodes].astype(np.int64), first, end).astype(np.int32), FIXED),
+        elements=elements,
         droppers=_springs(whole.droppers, droppers, place),
         links=_springs(whole.links, links, place),
         force=whole.force[rows],

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import Records
 from catenary_fe.engines.base import Progress, RunCase
 from catenary_fe.engines.checkpoint import Checkpoint
+from catenary_fe.engines.compiled import vectorising
 from catenary_fe.engines.faults import place_of_heads, smaller_steps
 from catenary_fe.engines.generalized_alpha import Scheme, at_start, make_scheme
 from catenary_fe.engines.history import History, RunStopped
 from catenary_fe.engines.nonlinear.arrays import Factor
 from catenary_fe.engines.nonlinear.leg import Arrays, Leg
 from catenary_fe.engines.nonlinear.recorder import EnergyRecord, RunRecorder
-from catenary_fe.engines.nonlinear.setup import Parameters
+from catenary_fe.engines.nonlinear.setup import Parameters, by_kind
 from catenary_fe.engines.nonlinear.state import State
 from catenary_fe.engines.nonlinear.steps import advance
 from catenary_fe.engines.recorder import (
@@ -136,7 +137,9 @@ class NonlinearRun:
         total = system.reference + moved
         self.records = self._records(sizes, total, engine._every)
         load_pantographs(heads, own, self.records, 0, engine._scheme, self._start, steps)
-        self.state = State.at(self._start, total, self._parameters.equations, (heads, own), sizes)
+        self.state = State.at(
+            self._start, by_kind(total, 2 * system.axes), self._parameters.equations, (heads, own), sizes
+        )
         energy = EnergyRecord(self._parameters, pantographs)
         self._recorder = RunRecorder(self.state, self.records, TensionRecord(TensionGauge(system)), energy)
         self._recorder.read(engine._scheme, moved)
@@ -148,9 +151,10 @@ class NonlinearRun:
         stations, droppers = self._parameters.stations, self._parameters.system.droppers
         counts = droppers.length.size, stations.supports.size, stations.heights.size, 0
         records = make_records(1, sizes, counts, every, spatial=self._engine._system.spatial)
-        records.supports[0, :, 0] = total[stations.supports] - stations.rest_supports
+        heights = total[self._parameters.system.heights]
+        records.supports[0, :, 0] = heights[stations.supports] - stations.rest_supports
         if every:
-            records.wire[0, 0] = total[stations.heights] - stations.rest
+            records.wire[0, 0] = heights - stations.rest
         return records
 
     def set_in_motion(self, v: Floats, x: Floats, heads: Floats) -> None:
@@ -301,7 +305,7 @@ class NonlinearRun:
             self._take_again(steps, before)
         self.done += steps
         if read:
-            moved = state.motion.total - self._parameters.system.reference
+            moved = self._parameters.system.spread(state.motion.q[self._parameters.rows.place])
             self._recorder.read(engine._scheme, moved, leg.sections)
 
     def _take_again(self, steps: int, before: list[NDArray[np.generic]]) -> None:
@@ -309,7 +313,7 @@ class NonlinearRun:
         for parts in PARTS:
             state.restore(before)
             scheme = make_scheme(replace(engine._time, step=self._step / parts))
-            moved = state.motion.total - self._parameters.system.reference
+            moved = self._parameters.system.spread(state.motion.q[self._parameters.rows.place])
             factor = self._parameters.factor(scheme, moved)
             state.rescale(engine._scheme, scheme, self._start.pantographs)
             done = self._take(steps, parts, scheme, factor)
@@ -348,16 +352,15 @@ class NonlinearRun:
         state, leg, tolerance = self.state, self._leg, self._engine._time.tolerance
         assert leg
         own = self._own = self._own or leg.arrays(state, self.records)
-        leg.take_from(state, own)
         begin = int(state.pantographs.step[0])
         times = self._step * (begin + np.arange(steps * parts + 1) / parts)
         signals = self._parameters.system.signals(times)
-        done, iterations = advance(
-            scheme, leg.equations, leg.stations, leg.factor(factor), own.wires, own.flat,
-            own.motion, own.slack, state.heads, state.pantographs, state.work, own.records, own.energy,
-            signals, steps, parts, tolerance,
-        )  # fmt: skip
-        leg.put_back(own, state)
+        with vectorising():
+            done, iterations = advance(
+                scheme, leg.equations, leg.stations, leg.factor(factor), own.wires, own.flat,
+                own.motion, own.slack, state.heads, state.pantographs, state.work, own.records, own.energy,
+                signals, steps, parts, tolerance,
+            )  # fmt: skip
         self.iterations += iterations
         return bool(done)
 

@@ -15,8 +15,9 @@ from catenary_fe.engines.nonlinear.arrays import Equations, Factor, SpringArrays
 from catenary_fe.engines.nonlinear.cables import Elements
 from catenary_fe.engines.recorder import surfaces_of
 from catenary_fe.engines.sections import Rows, parts_of
+from catenary_fe.fe.cable import tangent_blocks
 from catenary_fe.fe.cuts import section_part
-from catenary_fe.fe.spring import Springs
+from catenary_fe.fe.spring import FIXED, Springs
 from catenary_fe.fe.system import System
 
 Floats = NDArray[np.float64]
@@ -50,25 +51,20 @@ class Parameters:
 
     @cached_property
     def equations(self) -> Equations:
-        """Forces, mass and damping."""
-        line, cables, rows = self.system, self.system.cables, self.rows
+        """Forces; mass and damping of what is no wire, wires have theirs by element."""
+        line, rows, width = self.system, self.rows, 2 * self.system.axes
+        elements = _elements(line)
         return Equations(
-            reference=line.reference,
-            dof=rows.number(line.dof),
-            elements=Elements(
-                line.first,
-                cables.length,
-                cables.axial_stiffness,
-                cables.bending_stiffness,
-                1 + cables.rest_strain,
-            ),
-            droppers=_arrays(line.droppers),
-            links=_arrays(line.arms),
+            reference=elements.placed(by_kind(line.reference, width)),
+            dof=elements.placed(by_kind(rows.number(line.dof), width).astype(np.int32), FIXED),
+            elements=elements,
+            droppers=_arrays(line.droppers, width),
+            links=_arrays(line.arms, width),
             patterns=csr_rows(rows.rows_of(line.patterns)),
             stiffness=packed_rows(rows.matrix(line.free(self._linear_stiffness))),
             force=rows.spread(line.gather(line.force)),
-            mass=packed_rows(rows.matrix(self.mass, 1.0)),
-            damping=packed_rows(rows.matrix(line.free(self._damping))),
+            mass=packed_rows(rows.matrix(line.free(line.mass - line.wire_mass), 1.0)),
+            damping=packed_rows(rows.matrix(line.free(line.other_damping))),
         )
 
     @cached_property
@@ -83,17 +79,14 @@ class Parameters:
         return diags(self.system.ground_stiffness) + self.system.linear_stiffness
 
     @cached_property
-    def _damping(self) -> Any:
-        return self.system.damping()
-
-    @cached_property
     def _taut_damping(self) -> Any:
-        return self.system.free(self._damping + self.system.taut_damping())
+        return self.system.free(self.system.damping() + self.system.taut_damping())
 
     @cached_property
     def stations(self) -> Stations:
         """Contact wires and heights."""
         paths, rest = self.system.contact_paths, self.system.reference[self.system.heights]
+        node = [path.index[:, 0] // (2 * self.system.axes) for path in paths]
         return Stations(
             first=np.cumsum([0, *(path.x.size for path in paths)]),
             x=np.concatenate([path.x for path in paths]),
@@ -102,9 +95,9 @@ class Parameters:
             lateral=np.concatenate([path.lateral for path in paths]),
             at=self.rows.number(np.concatenate([path.dof for path in paths])),
             across=self.rows.number(np.concatenate([path.across_dof for path in paths])),
-            left=np.concatenate([path.across for path in paths]),
-            supports=np.concatenate([path.index[path.supports, 0] for path in paths]),
-            heights=self.system.heights,
+            node=np.concatenate(node),
+            supports=np.concatenate([own[path.supports] for own, path in zip(node, paths, strict=True)]),
+            heights=np.arange(rest.size),
             surfaces=surfaces_of(paths),
             rest=rest,
             rest_supports=np.concatenate([path.profile[path.supports, 0] for path in paths]),
@@ -115,10 +108,42 @@ class Parameters:
         tangent = self.system.tangent(moved)
         matrix = self.mass + scheme.g * self._taut_damping + scheme.b * tangent
         factor = factorise(self.rows.matrix(matrix, 1.0))
-        return Factor(packed_factor(factor), np.zeros(factor.shape[0]))
+        return Factor(packed_factor(factor, single=True), np.zeros(factor.shape[0]))
 
 
-def _arrays(springs: Springs) -> SpringArrays:
+def _elements(line: System) -> Elements:
+    """The cables by their first nodes."""
+    axes, cables = line.axes, line.cables
+    damping = np.zeros((0, cables.length.size))
+    if line.beta:
+        rest = line.reference[line.elements()].reshape(-1, 4, axes)
+        blocks = line.beta * tangent_blocks(cables, rest).reshape(-1, 4, axes, 4, axes)
+        scale = np.stack([cables.length, *np.ones((2, cables.length.size))])
+        parts = np.einsum("epkql,pe,qe->epkql", blocks[:, [2, 1, 3]][:, :, :, [2, 1, 3]], scale, scale)
+        damping = parts.reshape(-1, 3 * axes, 3 * axes)[:, *np.tril_indices(3 * axes)].T
+    return Elements.by_node(
+        line.first // (2 * axes),
+        line.alpha,
+        length=cables.length,
+        mass=line.mass_per_length * cables.length,
+        axial=cables.axial_stiffness,
+        bending=cables.bending_stiffness,
+        rest=1 + cables.rest_strain,
+        damping=damping,
+    )
+
+
+def by_kind(values: NDArray[Any], width: int) -> NDArray[Any]:
+    """Values of all coordinates, which follow one another node by node, as shape (width, nodes)."""
+    return np.ascontiguousarray(values.reshape(-1, width).T)
+
+
+def _arrays(springs: Springs, width: int) -> SpringArrays:
     return SpringArrays(
-        springs.first, springs.last, springs.pivot, springs.length, springs.stiffness, springs.damping
+        springs.first // width,
+        springs.last // width,
+        springs.pivot,
+        springs.length,
+        springs.stiffness,
+        springs.damping,
     )

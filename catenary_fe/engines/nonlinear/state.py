@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from catenary_fe.engines.arrays import PantographParameters, PantographState, Wires, Work
 from catenary_fe.engines.generalized_alpha import Scheme
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Motion, Slack
+from catenary_fe.engines.nonlinear.cables import Room
 from catenary_fe.engines.nonlinear.forces import ROOM
 from catenary_fe.engines.recorder import InitialState, Sizes
 from catenary_fe.fe.contact import PlacedPantograph
@@ -40,12 +41,10 @@ class State:
         pantographs: tuple[PantographParameters, PantographState],
         sizes: Sizes,
     ) -> State:
-        """At rest; ``total`` are positions and slopes there, shape (all coordinates,)."""
+        """At rest; ``total`` are positions and slopes there, shape (2 axes, nodes)."""
         n = equations.force.size
         wires = Wires(start.q[:, None].copy(), *(np.zeros((n, 1)) for _ in range(4)))
-        motion = Motion(
-            np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), total.copy(), np.zeros(total.size)
-        )
+        motion = Motion(start.q.copy(), np.zeros(n), np.zeros(n), np.zeros(n), Room.of(total.shape[0] // 2))
         work = _work(sizes)
         work.force[0] = start.contact_forces
         return cls(
@@ -62,7 +61,7 @@ class State:
         """Arrays that make up the state; the others are room for work."""
         return [
             *self.wires[:4],
-            self.motion.total,
+            self.motion.q,
             self.work.force,
             self.work.law_force,
             *self.pantographs,
@@ -129,8 +128,8 @@ def _work(sizes: Sizes) -> Work:
 
 def _energy_balance(start: InitialState, total: Floats, system: Equations, sizes: Sizes) -> EnergyBalance:
     j, masses = sizes.contacts, (sizes.pantographs, sizes.coordinates)
-    droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
-    span = total[droppers.last[:, None] + axes] - total[droppers.first[:, None] + axes]
+    droppers, axes = system.droppers, system.droppers.pivot.shape[1]
+    span = (total[:axes, droppers.last] - total[:axes, droppers.first]).T
     lengths: Floats = np.linalg.norm(span, axis=1)
     heads = np.zeros(masses)
     for p, placed in enumerate(start.pantographs):
@@ -156,13 +155,13 @@ def _energy_balance(start: InitialState, total: Floats, system: Equations, sizes
 
 
 def _slack(system: Equations) -> Slack:
-    droppers, axes = system.droppers, np.arange(system.droppers.pivot.shape[1])
-    ends = np.concatenate([droppers.first[:, None] + axes, droppers.last[:, None] + axes], axis=1)
+    droppers, axes = system.droppers, system.droppers.pivot.shape[1]
+    at = np.concatenate([system.dof[:axes, droppers.first], system.dof[:axes, droppers.last]]).T
     count = droppers.first.size
     return Slack(
         lack=np.zeros(count),
-        row=np.zeros(ends.shape),
-        at=system.dof[ends],
+        row=np.zeros(at.shape),
+        at=np.ascontiguousarray(at, dtype=np.int64),
         column=np.zeros((count, ROOM)),
         first=np.zeros(count, dtype=np.int64),
         width=np.zeros(count, dtype=np.int64),

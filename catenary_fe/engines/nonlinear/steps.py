@@ -28,11 +28,12 @@ from catenary_fe.engines.generalized_alpha import Scheme, predict
 from catenary_fe.engines.kernels import add_loads, copy, take
 from catenary_fe.engines.nonlinear import arrays, cables, energies, forces
 from catenary_fe.engines.nonlinear.arrays import EnergyBalance, Equations, Factor, Motion, Slack, Stations
-from catenary_fe.engines.nonlinear.cables import take_cables
 from catenary_fe.engines.nonlinear.energies import add_energy
 from catenary_fe.engines.nonlinear.forces import (
     local_compliance,
+    place_at,
     solve,
+    take_cables,
     take_droppers,
     take_links,
     woodbury_update,
@@ -52,7 +53,8 @@ def _place(
     heads: PantographParameters,
     pantographs: PantographState,
     work: Work,
-    total: Floats,
+    system: Equations,
+    motion: Motion,
     time: float,
 ) -> None:
     """Contacts where they are at the step's end; the forces of the step before are the first guess."""
@@ -66,7 +68,7 @@ def _place(
         position = heads.start[0, j] + heads.speed[0, j] * time
         e, _ = weigh_contact(stations, heads, work, 0, j, position)
         place_base(heads, work, 0, j, time)
-        place_head(heads, work, 0, j, _sideways(stations, work.shape[0, j], total, e))
+        place_head(heads, work, 0, j, _sideways(system, stations, work.shape[0, j], motion.q, e))
         first, width = local_compliance(factor, work.at[0, j], work.shape[0, j], work.column[0, j])
         work.first[0, j], work.width[0, j] = first, width
         for s in range(pantographs.x.shape[2]):
@@ -74,41 +76,33 @@ def _place(
 
 
 @compiled
-def _sideways(stations: Stations, weights: Floats, total: Floats, node: int) -> float:
+def _sideways(system: Equations, stations: Stations, weights: Floats, q: Floats, node: int) -> float:
     """[m] to the left of the track at a contact, as the wire was a step ago."""
     place = 0.0
-    if stations.left.shape[0] > 0:
+    if system.dof.shape[0] == 6:
         for m in range(4):
-            i = stations.left[node + m // 2, m % 2]
+            i = stations.node[node + m // 2]
             if i >= 0:
-                place += weights[m] * total[i]
+                place += weights[m] * place_at(system, q, 1 + 3 * (m % 2), i)
     return place
 
 
 @compiled
-def _move(system: Equations, scheme: Scheme, wires: Wires, motion: Motion) -> None:
-    """Positions and velocities that belong to the accelerations; no forces yet."""
-    q, v, x = wires.q, wires.v, wires.x
-    for i in range(x.shape[0]):
-        motion.q[i] = q[i, 0] + scheme.b * x[i, 0]
-        motion.v[i] = v[i, 0] + scheme.g * x[i, 0]
-    for i in range(system.dof.size):
-        k = system.dof[i]
-        motion.total[i] = system.reference[i] + (motion.q[k] if k >= 0 else 0.0)
-    motion.inner[:] = 0.0
+def _move(system: Equations, scheme: Scheme, flat: Wires, motion: Motion) -> None:
+    """Positions and velocities that belong to the accelerations; of forces the constant ones."""
+    for i in range(flat.x.size):
+        motion.q[i] = flat.q[i] + scheme.b * flat.x[i]
+        motion.v[i] = flat.v[i] + scheme.g * flat.x[i]
+        motion.residual[i] = system.force[i]
 
 
 @compiled
 def _residual(system: Equations, motion: Motion, flat: Wires, signals: Floats) -> None:
-    """What is out of balance at the step's end, but for contacts; the droppers' forces are in ``inner``."""
-    residual, axes = motion.residual, system.droppers.pivot.shape[1]
-    take_cables(axes, system.elements, motion.total, motion.inner)
-    take_links(system.links, motion.total, motion.inner)
-    copy(system.force, residual)
+    """What is out of balance at the step's end, but for contacts; droppers have added theirs."""
+    residual = motion.residual
+    take_cables(system, motion, flat.x, residual)
+    take_links(system, motion.q, residual)
     add_loads(system.patterns, signals, residual)
-    for i in range(system.dof.size):
-        if system.dof[i] >= 0:
-            residual[system.dof[i]] += motion.inner[i]
     take(system.stiffness, motion.q, residual)
     take(system.mass, flat.x, residual)
     take(system.damping, motion.v, residual)
@@ -148,13 +142,17 @@ def _relax(
 
 
 @compiled
-def _correct(scheme: Scheme, wires: Wires, motion: Motion) -> tuple[float, float]:
+def _correct(scheme: Scheme, flat: Wires, motion: Motion) -> tuple[float, float]:
     """Largest displacement of this iteration, and of the step so far [m]."""
-    change, moved = 0.0, 0.0
-    for i in range(motion.before.size):
-        change = max(change, abs(wires.x[i, 0] - motion.before[i]))
-        moved = max(moved, abs(scheme.h * motion.v[i]))
-    return scheme.b * change, moved
+    x, before, v = flat.x, motion.before, motion.v
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # each waits for its last one alone
+    e, f, g, h = 0.0, 0.0, 0.0, 0.0
+    for i in range(0, x.size, 4):
+        a, b = max(a, abs(x[i] - before[i])), max(b, abs(x[i + 1] - before[i + 1]))
+        c, d = max(c, abs(x[i + 2] - before[i + 2])), max(d, abs(x[i + 3] - before[i + 3]))
+        e, f = max(e, abs(v[i])), max(f, abs(v[i + 1]))
+        g, h = max(g, abs(v[i + 2])), max(h, abs(v[i + 3]))
+    return scheme.b * max(a, b, c, d), scheme.h * max(e, f, g, h)
 
 
 @compiled
@@ -185,15 +183,16 @@ def _record(
     for p in range(pantographs.x.shape[1]):
         for s in range(pantographs.x.shape[2]):
             to.masses[0, p, s, n] = pantographs.q[0, p, s] + scheme.b * pantographs.x[0, p, s]
+    up = system.dof.shape[0] // 2 - 1
     for s in range(stations.supports.size):
         i = stations.supports[s]
         if i >= 0:
-            to.supports[0, s, n] = motion.total[i] - stations.rest_supports[s]
+            to.supports[0, s, n] = place_at(system, motion.q, up, i) - stations.rest_supports[s]
     if to.every > 0 and n % to.every == 0:
         for node in range(stations.heights.size):
             i = stations.heights[node]
             if i >= 0:
-                to.wire[0, n // to.every, node] = motion.total[i] - stations.rest[node]
+                to.wire[0, n // to.every, node] = place_at(system, motion.q, up, i) - stations.rest[node]
 
 
 def _loop(sources: str) -> Any:
@@ -228,12 +227,12 @@ def _loop(sources: str) -> Any:
         begin = pantographs.step[0] * parts
         for n in range(begin, begin + steps * parts):
             predict(scheme, 0.0, flat)
-            _place(scheme, stations, factor, heads, pantographs, work, motion.total, scheme.h * (n + 1))
+            _place(scheme, stations, factor, heads, pantographs, work, system, motion, scheme.h * (n + 1))
             residual, converged, change = motion.residual, False, FAR
             step = pantographs.step[0] + 1
             for iteration in range(ITERATIONS):
                 iterations += 1
-                _move(system, scheme, wires, motion)
+                _move(system, scheme, flat, motion)
                 take_droppers(
                     system, scheme, motion, slack, energy, records.droppers[0], pantographs.step[0] + 1
                 )
@@ -246,7 +245,7 @@ def _loop(sources: str) -> Any:
                     flat.x[i] += residual[i]
                 _relax(scheme, wires, heads, pantographs, work, scheme.h * (n + 1))
                 earlier = change
-                change, moved = _correct(scheme, wires, motion)
+                change, moved = _correct(scheme, flat, motion)
                 if not change < FAR:
                     break
                 rate = change / earlier
