@@ -59,7 +59,7 @@ def packed_rows(matrix: Any, *, backward: bool = False, even: bool = False) -> P
 def packed_factor(factor: Any, *, single: bool = False) -> PackedFactor:
     """A symmetric matrix as (I + V)ᵀ S⁻¹ (I + V), see :class:`PackedFactor`.
 
-    single : V in single precision, for solutions that are iterated: half as much to read
+    single : in single precision, for solutions that are iterated: half as much to read
     """
     from scipy.sparse import bsr_matrix
 
@@ -76,6 +76,8 @@ def packed_factor(factor: Any, *, single: bool = False) -> PackedFactor:
     scaled = inverse / factor.U.diagonal().reshape(-1, 1, 4)
     S = np.einsum("nij,nkj->nik", scaled, inverse)
     lower, upper = packed_rows(V.T, even=True), packed_rows(V, backward=True, even=True)
+    inner = S[:, *np.triu_indices(4)]
     if single:
         lower, upper = (rows._replace(value=rows.value.astype(np.float32)) for rows in (lower, upper))
-    return PackedFactor(lower, upper, inner=S[:, *np.triu_indices(4)])
+        inner = inner.astype(np.float32)
+    return PackedFactor(lower, upper, inner)

@@ -107,7 +107,7 @@ if not numba.config.DISABLE_JIT:
             super().__init__(manager, kind, _VECTOR)
 
     def _kind(array: Any, eight: bool) -> Any:
-        assert array.layout == "C" and array.ndim in (1, 2)
+        assert array.layout == "C" and array.ndim in (1, 2) and (eight or array.dtype == types.float64)
         return _EIGHT if eight or array.ndim == 2 else types.float64
 
     def _place(context: Any, builder: Any, kinds: Any, kind: Any, eight: bool, array: Any, i: Any) -> Any:
@@ -123,6 +123,11 @@ if not numba.config.DISABLE_JIT:
             kind = _kind(array, eight)
 
             def generate(context: Any, builder: Any, types_: Any, arguments: Any) -> Any:
+                if array.dtype == types.float32:
+                    data = context.make_array(array)(context, builder, arguments[0]).data
+                    single = ir.VectorType(ir.FloatType(), SLOTS).as_pointer()
+                    place = builder.bitcast(builder.gep(data, [arguments[1]]), single)
+                    return builder.fpext(builder.load(place, align=4), _VECTOR)
                 return builder.load(_place(context, builder, types_.args, kind, eight, *arguments), align=8)
 
             return typing.signature(kind, array, types.intp), generate

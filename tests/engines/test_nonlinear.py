@@ -28,8 +28,8 @@ def test_cables_in_compiled_code(spatial, plane_shape, curved_shape):
     found, damped = np.zeros((2, rows.size))
     entry(take_cables)(Parameters(system).equations, motion, rows.spread(x), found)
     entry(damp_cables)(Parameters(system).equations, motion, damped)
-    assert found[rows.place] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
-    assert damped[rows.place] == pytest.approx(-lost, abs=1e-10 * np.abs(lost).max())
+    assert found[rows.place] == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+    assert damped[rows.place] == pytest.approx(-lost, abs=1e-7 * np.abs(lost).max())  # single precision
 
 
 def test_parts_of_steps_help_where_whole_ones_do_not_converge(short_shape, pantograph):

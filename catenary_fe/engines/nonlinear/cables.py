@@ -18,6 +18,7 @@ from catenary_fe.engines.compiled import compiled
 from catenary_fe.engines.lanes import load_eight, root, store_eight
 
 Tuple = tuple[Any, ...]
+Singles = NDArray[np.float32]
 TINY = 1e-60  # added to |r'|²: places without an element have no r'
 
 
@@ -29,7 +30,7 @@ class Elements(NamedTuple):
     length, mass : [m], [kg]
     axial, bending, rest : EA, EI, and 1 + strain without force
     damping : shape (entries, places), β K at rest over chord / L and both slopes, each with all axes: row by
-        row up to the diagonal; no entries without such damping
+        row up to the diagonal, in single precision; no entries without such damping
     alpha : [1/s], damping by mass
     """
 
@@ -38,15 +39,15 @@ class Elements(NamedTuple):
     axial: Floats
     bending: Floats
     rest: Floats
-    damping: Floats
+    damping: Singles
     alpha: float
 
     @classmethod
-    def by_node(cls, nodes: Integers, alpha: float, **arrays: Floats) -> Elements:
+    def by_node(cls, nodes: Integers, alpha: float, **arrays: Any) -> Elements:
         """From arrays of shape (..., elements), and the numbers of the elements' first nodes."""
         places, found = -(-(int(nodes[-1]) + 2) // SLOTS) * SLOTS, {}
         for name, values in arrays.items():
-            found[name] = np.full((*values.shape[:-1], places), 1.0 if name == "length" else 0.0)
+            found[name] = np.full((*values.shape[:-1], places), float(name == "length"), values.dtype)
             found[name][..., nodes] = values
         return cls(**found, alpha=alpha)
 
@@ -279,7 +280,7 @@ def damp(elements: Elements, room: Room, e: int) -> None:
 def taken(
     elements: Elements, room: Room, e: int, axis: int, inner: tuple[Any, Any, Any], speeding: Tuple
 ) -> Tuple:
-    """What elements take from forces of one axis, on position and slope at their first and at their last nodes.
+    """What elements take from forces of one axis: position and slope at their first, then at their last node.
 
     inner : forces that work on chord / L and the two slopes
     speeding : accelerations of positions and slopes at both ends

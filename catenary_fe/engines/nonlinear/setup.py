@@ -129,7 +129,7 @@ def _elements(line: System) -> Elements:
         axial=cables.axial_stiffness,
         bending=cables.bending_stiffness,
         rest=1 + cables.rest_strain,
-        damping=damping,
+        damping=damping.astype(np.float32),
     )
 
 
