@@ -26,7 +26,7 @@ from catenary_fe.statics import LineShape, Shape
 Floats = NDArray[np.float64]
 Rows = dict[str, tuple[Any, ...]]  # dimensions, values, and of a quantity its unit and name
 _NOTES = 3  # by themselves
-CHECKPOINT_FORM = 7  # rises when what a checkpoint holds changes
+CHECKPOINT_FORM = 8  # rises when what a checkpoint holds changes
 
 
 def make_run(
