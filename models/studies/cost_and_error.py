@@ -3,8 +3,8 @@
 Question: which element lengths, time step and engine give σ within 1 % of a converged computation at the
 least cost, on a plane line, a spatial one and one with stitch wires? Are the defaults among them?
 
-Run it with ``python models/studies/cost_and_error.py [FOLDER]``; it takes an hour on one core and writes
-``cost_and_error.md``, ``.json`` and ``.png``. Times compare within the study only.
+Run it with ``python models/studies/cost_and_error.py [FOLDER [LINE ...]]``; all lines take an hour on one
+core. It writes ``cost_and_error.md``, ``.json`` and ``.png``. Times compare within a line only.
 """
 
 from __future__ import annotations
@@ -134,11 +134,12 @@ def picture(results: dict[str, list[dict[str, Any]]], path: Path) -> None:
     panels[0].figure.savefig(path, dpi=130)
 
 
-def main(folder: Path) -> None:
-    """Run all cases; write table, numbers and picture."""
+def main(folder: Path, lines: list[str]) -> None:
+    """Run all cases of some lines, beside what the folder has of others; write table, numbers and picture."""
     folder.mkdir(parents=True, exist_ok=True)
-    results: dict[str, list[dict[str, Any]]] = {}
-    for line in LINES:
+    kept = folder / "cost_and_error.json"
+    results: dict[str, list[dict[str, Any]]] = json.loads(kept.read_text()) if kept.exists() else {}
+    for line in lines:
         run_case(line, "linearised", "2 m, 4 m, 1 m", 2.0)  # compiles
         results[line] = []
         for case in CASES:
@@ -148,11 +149,12 @@ def main(folder: Path) -> None:
                 f"{line}: {', '.join(map(str, case))}: σ {row['std_N']:.3f} N, {row['seconds']:.2f} s",
                 flush=True,
             )
-        (folder / "cost_and_error.json").write_text(json.dumps(results, indent=1), encoding="utf-8")
+        kept.write_text(json.dumps(results, indent=1), encoding="utf-8")
+    results = {line: results[line] for line in LINES if line in results}
     text = "\n".join([HEADING, *(text for line, rows in results.items() for text in table(line, rows))])
     (folder / "cost_and_error.md").write_text(text.rstrip() + "\n", encoding="utf-8")
     picture(results, folder / "cost_and_error.png")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path("out/cost_and_error"))
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "out/cost_and_error"), sys.argv[2:] or list(LINES))
