@@ -342,8 +342,8 @@ class System:
 
         β K is of the wires with their tension's stiffness; what supports and arms damp is given with them.
         """
-        rayleigh = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
-        return (rayleigh + self.other_damping).tocsr()
+        wires = self.alpha * self.wire_mass + self.beta * self.wire_stiffness()
+        return (wires + self.other_damping).tocsr()
 
     @property
     def other_damping(self) -> Any:

@@ -198,17 +198,29 @@ def points_of(elements: Elements, room: Room, e: int, axis: int, ends: Tuple) ->
     ends : positions and slopes at both ends
     """
     r = _at_points((ends[2] - ends[0]) / load_eight(elements.length, e), ends[1], ends[3])
-    P, i = room.points, 8 * SLOTS * axis
-    store_eight(P, i, r[0])
-    store_eight(P, i + SLOTS, r[1])
-    store_eight(P, i + 2 * SLOTS, r[2])
-    store_eight(P, i + 3 * SLOTS, r[3])
-    i += 4 * SLOTS
-    store_eight(P, i, r[4])
-    store_eight(P, i + SLOTS, r[5])
-    store_eight(P, i + 2 * SLOTS, r[6])
-    store_eight(P, i + 3 * SLOTS, r[7])
+    _store_four(room.points, 8 * axis, r[:4])
+    _store_four(room.points, 8 * axis + 4, r[4:])
     return _products(r)
+
+
+@compiled
+def _store_four(array: Floats, row: int, values: Tuple) -> None:
+    i = SLOTS * row
+    store_eight(array, i, values[0])
+    store_eight(array, i + SLOTS, values[1])
+    store_eight(array, i + 2 * SLOTS, values[2])
+    store_eight(array, i + 3 * SLOTS, values[3])
+
+
+@compiled
+def _load_four(array: Floats, row: int) -> tuple[Any, Any, Any, Any]:
+    i = SLOTS * row
+    return (
+        load_eight(array, i),
+        load_eight(array, i + SLOTS),
+        load_eight(array, i + 2 * SLOTS),
+        load_eight(array, i + 3 * SLOTS),
+    )
 
 
 @compiled
@@ -221,21 +233,8 @@ def nothing(elements: Elements) -> Tuple:
 @compiled
 def inner_forces(room: Room, axis: int, factors: Tuple) -> tuple[Any, Any, Any]:
     """Forces of one axis that work on chord / L and the two slopes, by :func:`factors_of` the elements."""
-    P, i = room.points, 8 * SLOTS * axis
-    first = (
-        load_eight(P, i),
-        load_eight(P, i + SLOTS),
-        load_eight(P, i + 2 * SLOTS),
-        load_eight(P, i + 3 * SLOTS),
-    )
-    i += 4 * SLOTS
-    last = (
-        load_eight(P, i),
-        load_eight(P, i + SLOTS),
-        load_eight(P, i + 2 * SLOTS),
-        load_eight(P, i + 3 * SLOTS),
-    )
-    return _generalised((*first, *last), factors)
+    first, last = _load_four(room.points, 8 * axis), _load_four(room.points, 8 * axis + 4)
+    return _generalised(first + last, factors)
 
 
 @compiled
@@ -248,11 +247,8 @@ def factors_of(elements: Elements, e: int, p: Tuple) -> Tuple:
 @compiled
 def rates_of(elements: Elements, room: Room, e: int, axis: int, ends: Tuple) -> None:
     """Keep the rates of an axis, of positions and slopes at both ends."""
-    axes, i = room.rates.shape[0] // 4, 4 * SLOTS * axis
-    store_eight(room.rates, i, ends[0])
-    store_eight(room.rates, i + SLOTS, ends[1])
-    store_eight(room.rates, i + 2 * SLOTS, ends[2])
-    store_eight(room.rates, i + 3 * SLOTS, ends[3])
+    axes = room.rates.shape[0] // 4
+    _store_four(room.rates, 4 * axis, ends)
     store_eight(room.parts, SLOTS * axis, (ends[2] - ends[0]) / load_eight(elements.length, e))
     store_eight(room.parts, SLOTS * (axes + axis), ends[1])
     store_eight(room.parts, SLOTS * (2 * axes + axis), ends[3])
@@ -285,11 +281,10 @@ def taken(
     inner : forces that work on chord / L and the two slopes
     speeding : accelerations of positions and slopes at both ends
     """
-    axes, V, i, alpha = room.rates.shape[0] // 4, room.rates, 4 * SLOTS * axis, elements.alpha
+    axes, rates, alpha = room.rates.shape[0] // 4, _load_four(room.rates, 4 * axis), elements.alpha
     L, c = load_eight(elements.length, e), load_eight(elements.mass, e) * (1 / 420)
-    y, s = speeding[0] + alpha * load_eight(V, i), (speeding[1] + alpha * load_eight(V, i + SLOTS)) * L
-    i += 2 * SLOTS
-    z, t = speeding[2] + alpha * load_eight(V, i), (speeding[3] + alpha * load_eight(V, i + SLOTS)) * L
+    y, s = speeding[0] + alpha * rates[0], (speeding[1] + alpha * rates[1]) * L
+    z, t = speeding[2] + alpha * rates[2], (speeding[3] + alpha * rates[3]) * L
     push = (inner[0] + load_eight(room.pulls, SLOTS * axis)) / L
     first = inner[1] + load_eight(room.pulls, SLOTS * (axes + axis))
     last = inner[2] + load_eight(room.pulls, SLOTS * (2 * axes + axis))
