@@ -235,7 +235,7 @@ class _ReducedWire:
 
 def _reduced_wires(system: System) -> list[_ReducedWire]:
     """Section by section."""
-    rest = system.reference[system.elements()].reshape(-1, 4, system.axes)
+    rest = system.of_elements(system.reference)
     stiffness, mass = tangent_blocks(system.cables, rest), system.element_mass
     ends = np.cumsum([wire.tension.size for wire in system.wires])
     found = []

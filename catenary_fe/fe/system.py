@@ -233,7 +233,7 @@ class System:
         total = self.reference + moved
         index = self.elements()
         residual: Floats = self.force - self.ground_stiffness * moved - self.linear_stiffness @ moved
-        values = inner_forces(self.cables, total[index].reshape(-1, 4, self.axes))
+        values = inner_forces(self.cables, self.of_elements(total))
         residual -= np.bincount(index.ravel(), values.ravel(), minlength=residual.size)
         for springs in (self.droppers, self.arms):
             at = springs.index()
@@ -311,7 +311,7 @@ class System:
 
     def tensions(self, moved: Floats) -> list[Floats]:
         """[N], for each wire shape (nodes - 1,): tension of its elements, mean of each."""
-        values = (self.reference + moved)[self.elements()].reshape(-1, 4, self.axes)
+        values = self.of_elements(self.reference + moved)
         pulls = self.cables.axial_stiffness * (mean_stretch(self.cables, values) - self.cables.rest_strain)
         return np.split(pulls, np.cumsum([wire.x.size - 1 for wire in self.wires])[:-1])
 
@@ -327,7 +327,7 @@ class System:
 
     def _wire_part(self, total: Floats) -> tuple[Integers, Floats]:
         index = self.elements()
-        return index, tangent_blocks(self.cables, total[index].reshape(-1, 4, self.axes))
+        return index, tangent_blocks(self.cables, self.of_elements(total))
 
     def _spring_parts(self, total: Floats, taut: bool) -> list[tuple[Integers, Floats]]:
         springs = [(s.index(), s.blocks(total, taut=taut)) for s in (self.droppers, self.arms)]
@@ -374,20 +374,6 @@ class System:
         """Stiffness of all but the wires at rest, droppers taut, over all coordinates, sparse."""
         return scattered(self._spring_parts(self.reference, True), self.dof.size) + self.linear_stiffness
 
-    def holds(self, wire: int) -> Floats:
-        """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track.
-
-        Springs count where nothing else holds it.
-        """
-        mine, fixed, springs = self.wires[wire], [np.array([])], [np.array([])]
-        for other in self.wires:
-            if (other.section, other.contact) == (mine.section, mine.contact):
-                along = 2 * self.axes * (other.first + np.arange(other.x.size))
-                fixed.append(other.x[self.dof[along] == FIXED])
-                springs.append(other.x[self.ground_stiffness[along] > 0])
-        held = np.concatenate(fixed)
-        return held if held.size else np.concatenate(springs)
-
     def free(self, matrix: Any) -> Any:
         """A matrix over all coordinates as one over the free ones."""
         return (self.transformation.T @ matrix @ self.transformation).tocsr()
@@ -395,7 +381,7 @@ class System:
     def energy(self, moved: Floats) -> float:
         """[J] stored in wires and springs, with the potential of the constant forces."""
         total = self.reference + moved
-        stored = strain_energy(self.cables, total[self.elements()].reshape(-1, 4, self.axes)).sum()
+        stored = strain_energy(self.cables, self.of_elements(total)).sum()
         stored += self.droppers.energy(total) + self.arms.energy(total)
         stored += (self.ground_stiffness * moved**2).sum() / 2 + moved @ (self.linear_stiffness @ moved) / 2
         return float(stored - self.force @ moved)
@@ -403,3 +389,7 @@ class System:
     def elements(self) -> Integers:
         """Shape (elements, 4 * axes): coordinates of each cable element."""
         return self.first[:, None] + np.arange(4 * self.axes)
+
+    def of_elements(self, values: Floats) -> Floats:
+        """Values of all coordinates by element, shape (elements, 4, axes)."""
+        return values[self.elements()].reshape(-1, 4, self.axes)

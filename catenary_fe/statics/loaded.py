@@ -139,7 +139,7 @@ class _Surroundings:
         # cut towards what holds it along the track a wire is held, at its other end it moves as under weights
         cuts = [_loose(system, x, cut + 1e-6, n == 0) for n, cut in enumerate(far) if cut > 0]
         loose = only(system, np.concatenate([np.zeros(0, dtype=np.int64), *cuts]))
-        at_rest = system.reference[loose.elements()].reshape(-1, 4, system.axes)
+        at_rest = loose.of_elements(system.reference)
         inside, size = system.dof - self.part.start, self.part.stop - self.part.start
         place = np.where(inside < size, inside, FIXED)  # below 0 what lies before it
         taken = scattered([(loose.elements(), tangent_blocks(loose.cables, at_rest))], size, place)
@@ -276,7 +276,7 @@ def _loose(system: System, x: Floats, cut: float, left: bool) -> Integers:
     across = elements_across(system, x, cut)
     firsts = [wire.first for wire in system.wires]
     owner = np.searchsorted(firsts, system.first[across] // (2 * system.axes), side="right") - 1
-    holds = [system.holds(int(n)) for n in owner]
+    holds = [_holds(system, int(n)) for n in owner]
     held = [bool(((at <= cut) if left else (at > cut)).any()) for at in holds]
     loose: Integers = across[~np.array(held, dtype=bool)]
     return loose
@@ -294,3 +294,18 @@ def _summed(values: Floats, index: Integers, size: int) -> Floats:
     at = (size * np.arange(points)[:, None] + index.ravel()).ravel()
     summed = np.bincount(at, values.reshape(points, -1).ravel(), minlength=points * size)
     return np.asarray(summed, dtype=float).reshape(points, size)
+
+
+def _holds(system: System, wire: int) -> Floats:
+    """[m], places where a wire, or the one that a stitch wire is clamped on, is held along the track.
+
+    Springs count where nothing else holds it.
+    """
+    mine, fixed, springs = system.wires[wire], [np.array([])], [np.array([])]
+    for other in system.wires:
+        if (other.section, other.contact) == (mine.section, mine.contact):
+            along = 2 * system.axes * (other.first + np.arange(other.x.size))
+            fixed.append(other.x[system.dof[along] == FIXED])
+            springs.append(other.x[system.ground_stiffness[along] > 0])
+    held = np.concatenate(fixed)
+    return held if held.size else np.concatenate(springs)

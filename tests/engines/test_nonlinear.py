@@ -20,7 +20,7 @@ def test_cables_in_compiled_code(spatial, plane_shape, curved_shape):
     rows, size = Parameters(system).rows, system.size
     q, v, x = np.random.default_rng(1).normal(size=(3, size)) * np.array([[0.01], [1.0], [10.0]])
     total = system.reference + system.spread(q)
-    inner = inner_forces(system.cables, total[system.elements()].reshape(-1, 4, system.axes))
+    inner = inner_forces(system.cables, system.of_elements(total))
     forces = np.bincount(system.elements().ravel(), inner.ravel(), minlength=total.size)
     lost = system.free(system.damping() - system.other_damping) @ v
     expected = -system.gather(forces) - system.free(system.wire_mass) @ x - lost

@@ -116,7 +116,7 @@ def _elements(line: System) -> Elements:
     axes, cables = line.axes, line.cables
     damping = np.zeros((0, cables.length.size))
     if line.beta:
-        rest = line.reference[line.elements()].reshape(-1, 4, axes)
+        rest = line.of_elements(line.reference)
         blocks = line.beta * tangent_blocks(cables, rest).reshape(-1, 4, axes, 4, axes)
         scale = np.stack([cables.length, *np.ones((2, cables.length.size))])
         parts = np.einsum("epkql,pe,qe->epkql", blocks[:, [2, 1, 3]][:, :, :, [2, 1, 3]], scale, scale)
